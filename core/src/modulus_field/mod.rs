@@ -1,0 +1,1 @@
+//! The modulus along a spoke as one closed-form expression.
