@@ -1,8 +1,12 @@
 //! Target meridians: the curve a spoke must take, as a function of arc length.
 
+pub mod ellipse;
 mod error;
+pub mod polynomial;
 
+pub use ellipse::EllipseMeridian;
 pub use error::TargetError;
+pub use polynomial::PolynomialMeridian;
 
 /// The state of a meridian at one arc length.
 ///
@@ -39,5 +43,14 @@ pub trait MeridianCurve: std::fmt::Debug + Send + Sync {
     fn stations(&self, count: usize) -> Vec<MeridianPoint> {
         let last = count.max(2) - 1;
         (0..=last).map(|i| self.at(self.length() * i as f64 / last as f64)).collect()
+    }
+}
+
+/// Refuses lengths that are not positive and finite.
+fn require_length(length_mm: f64) -> Result<(), TargetError> {
+    if length_mm.is_finite() && length_mm > 0.0 {
+        Ok(())
+    } else {
+        Err(TargetError::OutOfRange { name: "the length", value: length_mm, allowed: "positive and finite" })
     }
 }
