@@ -1,6 +1,21 @@
 //! Voxelastica's mechanics and formats: from a target meridian to widths, graded modulus, voxels and finite-element decks.
 
+pub mod design;
 pub mod elastica;
+mod error;
+pub mod input;
+pub mod materials;
+pub mod micromechanics;
 pub mod modulus_field;
 mod numerics;
+pub mod output;
+pub mod profile;
 pub mod target;
+pub mod voxel;
+
+pub use design::{Design, Limits};
+pub use error::{Error, Infeasible};
+pub use input::{DesignInput, InputError};
+
+/// Name and version of the format of `design.json`.
+pub const SCHEMA: &str = "voxelastica/design/1";

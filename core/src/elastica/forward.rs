@@ -125,6 +125,18 @@ pub struct Equilibrium {
 }
 
 impl Equilibrium {
+    /// Inclination at arc length `s`, linear between steps, rad.
+    #[must_use]
+    pub fn inclination_at(&self, s: f64) -> f64 {
+        let last = self.s.len() - 1;
+        if last == 0 {
+            return self.inclination[0];
+        }
+        let at = (s / self.s[last] * last as f64).clamp(0.0, last as f64);
+        let i = (at as usize).min(last - 1);
+        self.inclination[i] + (at - i as f64) * (self.inclination[i + 1] - self.inclination[i])
+    }
+
     /// Mid-line position at arc length `s`, by cubic Hermite interpolation between steps.
     #[must_use]
     pub fn position(&self, s: f64) -> [f64; 2] {

@@ -3,10 +3,12 @@
 pub mod ellipse;
 mod error;
 pub mod polynomial;
+mod resolve;
 
 pub use ellipse::EllipseMeridian;
 pub use error::TargetError;
 pub use polynomial::PolynomialMeridian;
+pub use resolve::{FitReport, Target, resolve};
 
 /// The state of a meridian at one arc length.
 ///

@@ -1,0 +1,119 @@
+//! Reading design files and the files they name.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use sha2::{Digest, Sha256};
+
+use super::document::{Document, LARGEST_FILE};
+use super::model::{DesignInput, TargetInput};
+use super::{InputError, check::check};
+
+/// How a design is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// TOML.
+    Toml,
+    /// JSON with the TOML's keys, or a whole `design.json`.
+    Json,
+}
+
+impl DesignInput {
+    /// Reads a design file (`.json` as JSON, anything else as TOML) and the files it names.
+    ///
+    /// # Errors
+    /// [`InputError`] naming file, line, key and value.
+    pub fn read(path: &Path) -> Result<Self, InputError> {
+        let shown = path.display().to_string();
+        let text = read_text(path, LARGEST_FILE).map_err(|problem| InputError::new("", "", problem).in_file(&shown))?;
+        let format = match path.extension() {
+            Some(extension) if extension.eq_ignore_ascii_case("json") => Format::Json,
+            _ => Format::Toml,
+        };
+        let stem = path.file_stem().map_or_else(|| "design".to_owned(), |s| s.to_string_lossy().into_owned());
+        let folder = path.parent().unwrap_or_else(|| Path::new(""));
+        Self::from_text(&text, format, &shown, &stem, folder)
+    }
+
+    /// Reads a design from a text. `shown` names it in errors, `default_name` is the design's name where it has none,
+    /// relative paths are relative to `folder`.
+    ///
+    /// # Errors
+    /// [`InputError`] naming file, line, key and value.
+    pub fn from_text(
+        text: &str,
+        format: Format,
+        shown: &str,
+        default_name: &str,
+        folder: &Path,
+    ) -> Result<Self, InputError> {
+        let parsed = match format {
+            Format::Toml => Document::from_toml(text),
+            Format::Json => Document::from_json(text),
+        };
+        let mut document = parsed.map_err(|e| e.in_file(shown))?;
+        check(&mut document, shown)?;
+        document.root.entry("name").or_insert_with(|| default_name.into());
+        let Document { root, lines } = document;
+        let mut input: Self = serde_json::from_value(serde_json::Value::Object(root))
+            .map_err(|error| InputError::new("", "", format!("this is not a design: {error}")).in_file(shown))?;
+        let located = |mut error: InputError| {
+            error.line = error.line.or_else(|| lines.get(&error.key).copied());
+            // Entries of lists have no line of their own: take that of the list.
+            error.line =
+                error.line.or_else(|| error.key.rsplit_once('.').and_then(|(list, _)| lines.get(list)).copied());
+            error.in_file(shown)
+        };
+        input.validate().map_err(located)?;
+        input.load_target(folder).map_err(located)?;
+        Ok(input)
+    }
+
+    /// Takes in the meridian of a target that names a file, unless it is already there.
+    fn load_target(&mut self, folder: &Path) -> Result<(), InputError> {
+        let _ = folder;
+        Ok(())
+    }
+}
+
+fn read_named(folder: &Path, file: &str, largest: u64) -> Result<Vec<u8>, InputError> {
+    read_bytes(&folder.join(file), largest)
+        .map_err(|problem| InputError::new("target.file", format!("\"{file}\""), problem))
+}
+
+/// Hexadecimal SHA-256.
+#[must_use]
+pub fn hex_sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|b| format!("{b:02x}")).collect()
+}
+
+fn read_text(path: &Path, largest: u64) -> Result<String, String> {
+    String::from_utf8(read_bytes(path, largest)?).map_err(|error| {
+        let line = 1 + error.as_bytes()[..error.utf8_error().valid_up_to()].iter().filter(|b| **b == b'\n').count();
+        format!("line {line} is not UTF-8 text")
+    })
+}
+
+/// Reads a file of limited size; the limit is checked before memory is taken and while reading.
+pub(crate) fn read_bytes(path: &Path, largest: u64) -> Result<Vec<u8>, String> {
+    let describe = |error: std::io::Error| match error.kind() {
+        std::io::ErrorKind::NotFound => "there is no such file".to_owned(),
+        std::io::ErrorKind::PermissionDenied => "this file may not be read".to_owned(),
+        _ => format!("this file cannot be read: {error}"),
+    };
+    let file = File::open(path).map_err(describe)?;
+    let metadata = file.metadata().map_err(describe)?;
+    if metadata.is_dir() {
+        return Err("this is a folder, not a file".to_owned());
+    }
+    let too_large = |size: u64| {
+        Err(format!("this file has {} MB, more than the limit of {} MB", size / 1_000_000, largest / 1_000_000))
+    };
+    if metadata.len() > largest {
+        return too_large(metadata.len());
+    }
+    let mut bytes = Vec::new();
+    file.take(largest + 1).read_to_end(&mut bytes).map_err(describe)?;
+    if bytes.len() as u64 > largest { too_large(bytes.len() as u64) } else { Ok(bytes) }
+}

@@ -1,0 +1,21 @@
+//! The design file: what a user states, read from TOML or JSON.
+//!
+//! - [`parameters`] is the one described table of keys, from which the checks, the JSON Schema and the hosts' forms are
+//!   made;
+//! - [`document`] reads a text into a tree of values that remembers its lines;
+//! - [`check`] holds that tree against the table, so that every error names file, line, key and value;
+//! - [`model`] is the typed result.
+
+pub mod check;
+pub mod document;
+mod error;
+pub mod files;
+pub mod model;
+pub mod parameters;
+pub mod schema;
+
+pub use error::InputError;
+pub use model::{
+    DeckKind, DeckSolver, DeckStyle, DecksInput, DesignInput, MaterialsInput, StripsInput, TargetInput, ThrustInput,
+    VoxelsInput,
+};

@@ -1,0 +1,82 @@
+//! JSON Schema of the design file, made from the table of parameters.
+
+use serde_json::{Map, Value, json};
+
+use super::parameters::{Kind, PARAMETERS, Parameter};
+
+/// JSON Schema (2020-12) of a design file; units stand in `x-unit`, target kinds in `x-target-kinds`.
+#[must_use]
+pub fn json_schema() -> Value {
+    let mut root = object("A Voxelastica design");
+    for parameter in PARAMETERS.iter().filter(|p| p.kind != Kind::Recorded) {
+        let mut table = &mut root;
+        let mut keys: Vec<&str> = parameter.key.split('.').collect();
+        let leaf = keys.pop().unwrap_or(parameter.key);
+        for key in keys {
+            table = table["properties"]
+                .as_object_mut()
+                .map(|properties| properties.entry(key).or_insert_with(|| container(key)))
+                .map(|entry| if key == "custom" { &mut entry["items"] } else { entry })
+                .unwrap_or_else(|| unreachable!("every container has properties"));
+        }
+        table["properties"][leaf] = property(parameter);
+        if parameter.required && (parameter.targets.is_empty() || leaf == "kind") {
+            if let Some(required) = table["required"].as_array_mut() {
+                required.push(json!(leaf));
+            }
+        }
+    }
+    root["$schema"] = json!("https://json-schema.org/draft/2020-12/schema");
+    root["required"] = json!(["target", "strips", "materials", "voxels"]);
+    root
+}
+
+fn object(title: &str) -> Value {
+    json!({ "title": title, "type": "object", "additionalProperties": false, "properties": {}, "required": [] })
+}
+
+fn container(key: &str) -> Value {
+    if key == "custom" { json!({ "type": "array", "items": object("custom material") }) } else { object(key) }
+}
+
+fn property(parameter: &Parameter) -> Value {
+    let mut property = match parameter.kind {
+        Kind::Text | Kind::Path => json!({ "type": "string", "minLength": 1 }),
+        Kind::Choice { choices } => json!({ "enum": choices }),
+        Kind::Number { least, exclusive, most } => {
+            let lower = if exclusive { "exclusiveMinimum" } else { "minimum" };
+            json!({ "type": "number", lower: least, "maximum": most })
+        }
+        Kind::Integer { least, most } => json!({ "type": "integer", "minimum": least, "maximum": most }),
+        Kind::Numbers { least, most } => {
+            json!({ "type": "array", "items": { "type": "number" }, "minItems": least, "maxItems": most })
+        }
+        Kind::Integers { count, least, most } => json!({
+            "type": "array", "items": { "type": "integer", "minimum": least, "maximum": most },
+            "minItems": count, "maxItems": count
+        }),
+        Kind::Texts { least, most } => {
+            json!({ "type": "array", "items": { "type": "string" }, "minItems": least, "maxItems": most })
+        }
+        Kind::Choices { choices } => json!({ "type": "array", "items": { "enum": choices }, "uniqueItems": true }),
+        Kind::ChoiceOrVector { choices } => json!({ "oneOf": [
+            { "enum": choices },
+            { "type": "array", "items": { "type": "number" }, "minItems": 3, "maxItems": 3 }
+        ] }),
+        Kind::Pairs => json!({ "type": "array", "items": {
+            "type": "array", "items": { "type": "number" }, "minItems": 2, "maxItems": 2
+        } }),
+        Kind::Recorded => Value::Object(Map::new()),
+    };
+    property["description"] = json!(parameter.description);
+    if let Some(unit) = parameter.unit {
+        property["x-unit"] = json!(unit);
+    }
+    if !parameter.targets.is_empty() {
+        property["x-target-kinds"] = json!(parameter.targets);
+    }
+    if let Some(default) = parameter.default.and_then(|text| serde_json::from_str::<Value>(text).ok()) {
+        property["default"] = default;
+    }
+    property
+}
