@@ -1,7 +1,11 @@
 //! What `design` writes into a folder.
 
+pub mod design_json;
+pub mod folder;
+pub mod json;
 pub mod provenance;
 pub mod summary;
+pub mod tables;
 
 pub use provenance::Provenance;
 pub use summary::Summary;

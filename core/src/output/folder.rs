@@ -1,0 +1,182 @@
+//! Writing files such that nothing half-written is ever seen.
+
+use std::fs;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use tempfile::NamedTempFile;
+
+use crate::error::Error;
+
+/// Buffer in front of a file, bytes.
+const BUFFER: usize = 1 << 20;
+
+/// Files on their way into a folder. They are written under temporary names beside their final places and renamed
+/// together by [`Staging::commit`]; dropping it instead removes them and leaves the folder as it was.
+#[derive(Debug)]
+pub struct Staging {
+    root: PathBuf,
+    files: Vec<(PathBuf, NamedTempFile)>,
+    /// Folders that were made for this and are removed again if nothing is committed.
+    made: Vec<PathBuf>,
+}
+
+impl Staging {
+    /// Prepares a folder, making it where it does not exist.
+    ///
+    /// # Errors
+    /// [`Error::Output`] where it cannot be made.
+    pub fn new(root: &Path) -> Result<Self, Error> {
+        let mut staging = Self { root: root.to_owned(), files: Vec::new(), made: Vec::new() };
+        staging.make(root)?;
+        Ok(staging)
+    }
+
+    /// Makes a folder and those above it, remembering which were not there.
+    fn make(&mut self, folder: &Path) -> Result<(), Error> {
+        if folder.as_os_str().is_empty() || folder.is_dir() {
+            return Ok(());
+        }
+        if let Some(parent) = folder.parent() {
+            self.make(parent)?;
+        }
+        match fs::create_dir(folder) {
+            Ok(()) => {
+                self.made.push(folder.to_owned());
+                Ok(())
+            }
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists && folder.is_dir() => Ok(()),
+            Err(error) => Err(Error::output(folder, &error)),
+        }
+    }
+
+    /// Writes one file, given by its path relative to the folder.
+    ///
+    /// # Errors
+    /// [`Error::Output`] naming the file, or what `write` returns.
+    pub fn write<E>(&mut self, relative: &str, write: impl FnOnce(&mut dyn Write) -> Result<(), E>) -> Result<(), Error>
+    where
+        E: Into<WriteFailure>,
+    {
+        let path = self.root.join(relative);
+        let folder = path.parent().unwrap_or(&self.root).to_owned();
+        self.make(&folder)?;
+        if path.is_dir() {
+            return Err(Error::Output {
+                path,
+                problem: "a folder stands where a file is to be written".to_owned(),
+                help: "move it away or choose another folder with -o".to_owned(),
+            });
+        }
+        let fail = |error: &io::Error| Error::output(&path, error);
+        let file = temporary(&folder).map_err(|e| fail(&e))?;
+        let mut buffered = BufWriter::with_capacity(BUFFER, file);
+        write(&mut buffered).map_err(|failure| match failure.into() {
+            WriteFailure::Io(error) => fail(&error),
+            WriteFailure::Other(error) => error,
+        })?;
+        let file = buffered.into_inner().map_err(|e| fail(e.error()))?;
+        self.files.push((path, file));
+        Ok(())
+    }
+
+    /// Writes a text.
+    ///
+    /// # Errors
+    /// [`Error::Output`] naming the file.
+    pub fn write_text(&mut self, relative: &str, text: &str) -> Result<(), Error> {
+        self.write(relative, |out| out.write_all(text.as_bytes()))
+    }
+
+    /// Gives all files their final names.
+    ///
+    /// # Errors
+    /// [`Error::Output`] naming the first file that could not be renamed.
+    pub fn commit(mut self) -> Result<(), Error> {
+        for (path, file) in self.files.drain(..) {
+            file.persist(&path).map_err(|e| Error::output(&path, &e.error))?;
+        }
+        self.made.clear();
+        Ok(())
+    }
+}
+
+impl Drop for Staging {
+    fn drop(&mut self) {
+        self.files.clear();
+        // Only empty folders go; whatever else is in them stays.
+        for folder in self.made.iter().rev() {
+            let _ = fs::remove_dir(folder);
+        }
+    }
+}
+
+/// What can stop the writing of a file.
+pub enum WriteFailure {
+    /// The file system.
+    Io(io::Error),
+    /// Something else.
+    Other(Error),
+}
+
+impl From<io::Error> for WriteFailure {
+    fn from(error: io::Error) -> Self {
+        Self::Io(error)
+    }
+}
+
+impl From<Error> for WriteFailure {
+    fn from(error: Error) -> Self {
+        Self::Other(error)
+    }
+}
+
+fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".voxelastica-").suffix(".tmp");
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.tempfile_in(folder)
+}
+
+/// Bytes free where `folder` is or will be; `None` where the system does not say.
+#[must_use]
+pub fn free_bytes(folder: &Path) -> Option<u64> {
+    let absolute = std::path::absolute(folder).ok()?;
+    let existing = absolute.ancestors().find(|p| p.is_dir())?;
+    fs4::available_space(existing).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_is_left_behind_unless_committed() {
+        let root = tempfile::tempdir().unwrap();
+        let target = root.path().join("a/b");
+        let mut staging = Staging::new(&target).unwrap();
+        staging.write_text("c/one.txt", "1").unwrap();
+        let failed = staging.write("two.txt", |_| Err(io::Error::from(io::ErrorKind::StorageFull)));
+        assert!(failed.unwrap_err().to_string().contains("disk is full"));
+        drop(staging);
+        assert!(!root.path().join("a").exists());
+
+        let mut staging = Staging::new(&target).unwrap();
+        staging.write_text("c/one.txt", "1").unwrap();
+        staging.commit().unwrap();
+        assert_eq!(fs::read_to_string(target.join("c/one.txt")).unwrap(), "1");
+        assert_eq!(fs::read_dir(target.join("c")).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_file_in_the_folders_place_is_named() {
+        let root = tempfile::tempdir().unwrap();
+        let blocked = root.path().join("out");
+        fs::write(&blocked, "mine").unwrap();
+        let error = Staging::new(&blocked.join("deep")).unwrap_err();
+        assert_eq!(error.exit_code(), 5);
+        assert!(error.to_string().contains("out"), "{error}");
+        assert_eq!(fs::read_to_string(&blocked).unwrap(), "mine");
+    }
+}
