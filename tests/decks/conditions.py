@@ -167,6 +167,8 @@ def _output(step: Step) -> Iterator[Problem]:
             yield problem(block, "history output of nodes needs NSET")
         elif block.keyword == "ELEMENT OUTPUT" and history and not (block.has("ELSET") or block.has("TRACER SET")):
             yield problem(block, "history output of elements needs ELSET")
+        elif block.keyword == "ENERGY OUTPUT" and not history:
+            yield problem(block, "belongs below *OUTPUT, HISTORY")
         if block.keyword in ("NODE OUTPUT", "ELEMENT OUTPUT") and not block.has("VARIABLE") and not block.data.strip():
             yield problem(block, "names no variable")
 

@@ -4,10 +4,11 @@
     deck = parse_deck(text)
     deck.points("MIDLINE-1")
 
-ABAQUS is not to be had here, so this is the nearest thing to its input file processor: the tables beside this file say
-which keywords, parameters and values exist and where they may stand, and the other modules check what the processor or
-the solver would only notice later, or never (a node without an initial field value silently gets 0). It is stricter than
-ABAQUS where that helps us: keywords and parameters are spelled out, and names with blanks are quoted.
+ABAQUS is not free, so this is the nearest thing to its input file processor that every machine can run: the tables
+beside this file say which keywords, parameters and values exist and where they may stand, and the other modules check
+what the processor or the solver would only notice later, or never (a node without an initial field value silently gets
+0). It is stricter than ABAQUS where that helps us: keywords and parameters are spelled out, and names with blanks are
+quoted. Files that *INCLUDE names are not followed.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from . import conditions, semantics
-from .blocks import Block, Problem, blocks, buffer
+from .blocks import Block, Problem, blocks, buffer, in_parts
 from .builder import CHUNK, Builder
 from .model import Deck
 from .table import Dialect, Placement, data_lines, keyword_line
@@ -31,7 +32,6 @@ REFERENCES = {
     "nset", "elset", "node", "surface", "material", "amplitude", "orientation", "controls", "interaction", "filter",
     "time points", "table", "distribution",
 }  # fmt: skip
-STRUCTURE = re.compile(rb"^[ \t]*\*[ \t]*(part|assembly)\b", re.MULTILINE | re.IGNORECASE)
 
 
 def check_deck(source: Path | str, dialect: str = "abaqus") -> list[Problem]:
@@ -51,15 +51,15 @@ def check_deck(source: Path | str, dialect: str = "abaqus") -> list[Problem]:
 def parse_deck(source: Path | str, dialect: str = "abaqus") -> Deck:
     """Reads a deck without judging it; what could not be understood is in ``problems`` of the result."""
     data = buffer(source)
-    builder = Builder(dialect, bool(STRUCTURE.search(data)))
+    builder = Builder(dialect, in_parts(data))
     for block in blocks(data):
         builder.add(block)
     return builder.deck
 
 
 def _read(data: bytes | mmap.mmap, rules: Dialect) -> tuple[Builder, list[Problem]]:
-    in_parts = rules.parts and bool(STRUCTURE.search(data))
-    builder, placement = Builder(rules.name, in_parts), Placement(rules, in_parts)
+    parts = rules.parts and in_parts(data)
+    builder, placement = Builder(rules.name, parts), Placement(rules, parts)
     found = list(_lines(data, rules))
     named: list[semantics.Reference] = []
     for block in blocks(data):
@@ -90,7 +90,7 @@ def _preamble(block: Block) -> Iterator[Problem]:
 
 
 def _lines(data: bytes | mmap.mmap, rules: Dialect) -> Iterator[Problem]:
-    """Characters and lengths of all lines, on the raw bytes: the first offence of each kind in each stretch of lines."""
+    """Characters and lengths of all lines, on the raw bytes; of foreign characters the first in each stretch."""
     line, start = 1, 0
     long_line = re.compile(rb"^[^\r\n]{%d}" % (rules.line_length + 1), re.MULTILINE)
     while start < len(data):
@@ -99,7 +99,8 @@ def _lines(data: bytes | mmap.mmap, rules: Dialect) -> Iterator[Problem]:
         if not chunk.isascii():
             at = re.search(rb"[\x80-\xff]", chunk).start()
             yield Problem(line + chunk.count(b"\n", 0, at), "", "a character that is not 7-bit ASCII")
-        for match in long_line.finditer(chunk):
+        longest = max(map(len, chunk.split(b"\n")))
+        for match in long_line.finditer(chunk) if longest > rules.line_length else ():
             at = line + chunk.count(b"\n", 0, match.start())
             yield Problem(at, "", f"the line has more than {rules.line_length} characters")
         line += chunk.count(b"\n")

@@ -63,7 +63,11 @@ class Set:
             seen = set(self.members)
             self.members += [m for m in new if not (m in seen or seen.add(m))]
         else:
-            self.members = sorted({*self.members, *new}, key=_order)
+            merged = {*self.members, *new}
+            try:
+                self.members = sorted(merged)
+            except TypeError:  # nodes of the assembly beside those of instances
+                self.members = sorted(merged, key=_order)
 
 
 def _order(member: int | Ref) -> tuple[str, int]:
@@ -146,6 +150,12 @@ class Material:
         return int(text) if text and text.isdigit() else 0
 
     @property
+    def all_fields(self) -> int:
+        """How many field variables any of its options depends on."""
+        counts = [block.get("DEPENDENCIES") or "0" for block in self.options.values()]
+        return max((int(c) for c in counts if c.isdigit()), default=0)
+
+    @property
     def needs_temperature(self) -> bool:
         """Whether the elasticity varies with temperature, so that nodes need one."""
         elastic = self.options.get("ELASTIC")
@@ -183,6 +193,7 @@ class Deck:
     constraints: list[tuple[Block, Scope]] = field(
         default_factory=list
     )  # couplings, rigid bodies, equations, ties, mpcs
+    contacts: list[tuple[Block, bool]] = field(default_factory=list)  # and whether it stands in a step
     initial: list[Block] = field(default_factory=list)
     boundaries: list[Block] = field(default_factory=list)  # those of the model data
     steps: list[Step] = field(default_factory=list)

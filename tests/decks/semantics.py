@@ -1,4 +1,4 @@
-"""What has to hold across a deck: names that resolve, elements with sections, nodes with values, constraints that agree."""
+"""What must hold across a deck: names resolve, elements have sections, nodes have values, constraints agree."""
 
 from __future__ import annotations
 
@@ -62,13 +62,42 @@ def data_references(deck: Deck) -> Iterator[Problem]:
             elif block.get("TYPE") in (None, "ELEMENT") and not (block.has("COMBINE") or block.has("CROP")):
                 yield from _rows(deck, block, "elsets", "element set", scope, 1)
                 yield from _faces(deck, block, scope)
-    for block, scope in deck.constraints:
-        if block.keyword == "TIE":
+    pairs = [(block, scope) for block, scope in deck.constraints if block.keyword == "TIE"]
+    for block, scope in pairs + [(block, deck.root) for block, _ in deck.contacts]:
+        for line, items in block.rows():
+            for name in items[:2]:
+                owner, _, local = deck.split(label(name), scope)
+                if name and (owner is None or local not in owner.surfaces):
+                    yield problem(block, f"surface {name} is not defined", line)
+
+
+def contacts(deck: Deck) -> Iterator[Problem]:
+    """Contact pairs are model data in ABAQUS/Standard and history data in ABAQUS/Explicit; properties exist."""
+    explicit = any(step.explicit for step in deck.steps)
+    for block, in_step in deck.contacts:
+        if block.keyword == "CONTACT PAIR" and deck.dialect == "abaqus":
+            if explicit != in_step:
+                where = "a step, for ABAQUS/Explicit" if explicit else "the model data, for ABAQUS/Standard"
+                yield problem(block, f"belongs into {where}")
+            if not explicit and not block.has("INTERACTION"):
+                yield problem(block, "required parameter INTERACTION is missing")
+        if block.keyword == "CONTACT PROPERTY ASSIGNMENT":
             for line, items in block.rows():
-                for name in items[:2]:
-                    owner, _, local = deck.split(label(name), scope)
-                    if owner is None or local not in owner.surfaces:
-                        yield problem(block, f"surface {name} is not defined", line)
+                if items[2:] and label(items[2]) not in deck.named.get("interaction", {}):
+                    yield problem(block, f"interaction {items[2]} is not defined", line)
+
+
+def joined_names(deck: Deck) -> Iterator[Problem]:
+    """ABAQUS itself calls the sets of an instance INSTANCE_SET, so no set of the assembly may bear such a name."""
+    for kind in ("nsets", "elsets"):
+        for name, found in getattr(deck.root, kind).items():
+            for instance in deck.instances.values():
+                if name.startswith(instance.name + "_") and name[len(instance.name) + 1 :] in getattr(
+                    instance.part, kind
+                ):
+                    yield Problem(
+                        found.line, kind[:-1].upper(), f"{name} is ABAQUS's own name for a set of {instance.name}"
+                    )
 
 
 def _rows(deck: Deck, block: Block, kind: str, thing: str, scope: Scope, count: int) -> Iterator[Problem]:
@@ -135,11 +164,11 @@ def _shell(block: Block) -> Iterator[Problem]:
     points = items[1] if len(items) > 1 else ""
     simpson = points and block.get("SECTION INTEGRATION") != "GAUSS"
     if simpson and (not points.isdigit() or int(points) < 3 or int(points) % 2 == 0):
-        yield problem(block, f"{points} integration points: Simpson's rule takes an odd number, three or more", line)
+        yield problem(block, f"{points} integration points: Simpson's rule takes an odd number from three on", line)
 
 
 def initial_values(deck: Deck) -> Iterator[Problem]:
-    """Nodes of materials that depend on a field or on temperature have an initial value: the solver assumes 0 silently."""
+    """Nodes of materials that depend on a field or on temperature have an initial value: the solver assumes 0."""
     given: dict[str, dict[str | None, set[int]]] = defaultdict(lambda: defaultdict(set))
     for block in deck.initial:
         kind = block.get("TYPE")
@@ -150,7 +179,7 @@ def initial_values(deck: Deck) -> Iterator[Problem]:
         for block in scope.sections:
             material = deck.materials.get(block.get("MATERIAL") or "")
             found = scope.elsets.get(block.get("ELSET") or "")
-            keys = [f"FIELD {n + 1}" for n in range(material.fields)] if material else []
+            keys = [f"FIELD {n + 1}" for n in range(material.all_fields)] if material else []
             keys += ["TEMPERATURE"] if material and material.needs_temperature else []
             nodes = scope.element_nodes(set(found.members)) if found and keys else set()
             for key in keys:
@@ -163,7 +192,18 @@ def initial_values(deck: Deck) -> Iterator[Problem]:
 
 def _given(deck: Deck, block: Block, found: dict[str | None, set[int]]) -> Iterator[Problem]:
     names: set[str] = set()
-    for offset, raw in enumerate(block.numbers().split(b"\n")):
+    flat = block.numbers().replace(b"\n", b",").split(b",")
+    plain = block.data.count(b",") == block.data.strip().count(b"\n") + 1
+    try:  # number, value in every line
+        numbers = set(map(int, flat[::2])) if plain else set()
+        plain = plain and len(list(map(float, flat[1::2]))) == len(flat[::2])
+    except ValueError:
+        plain = False
+    if plain:
+        found[None] |= numbers
+    for offset, raw in () if plain else enumerate(block.data.split(b"\n")):
+        if not raw.strip() or raw.lstrip().startswith(b"**"):
+            continue
         name, _, value = raw.partition(b",")
         name = name.strip()
         if name.isdigit():
@@ -295,4 +335,4 @@ def _prescribed(deck: Deck) -> set[tuple[Ref, int]]:
     return found
 
 
-CHECKS = (data_references, sections, initial_values, constraints)
+CHECKS = (data_references, contacts, joined_names, sections, initial_values, constraints)

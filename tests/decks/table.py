@@ -1,4 +1,4 @@
-"""The keyword tables, and every check that needs one block and its neighbours only: spelling, values, place, data lines."""
+"""The keyword tables, and the checks that need one block and its neighbours: spelling, values, place, data lines."""
 
 from __future__ import annotations
 

@@ -55,14 +55,19 @@ MISTAKES = [
     ("parts_shell", "NSET=RIM-1\n", "NSET=__RIM__\n", "NSET", "reserved"),
     ("parts_shell", "*HEADING", "1, 2, 3\n*HEADING", "", "before the first keyword"),
     # place
-    ("parts_shell", "*END PART\n*PART, NAME=PLATE", "*STATIC\n*END PART\n*PART, NAME=PLATE", "STATIC", "outside a step"),
+    ("parts_shell", "*END PART\n*PART, NAME=PLATE", "*STATIC\n*END PART\n*PART, NAME=PLATE", "STATIC",
+     "outside a step"),
     ("parts_shell", "*END ASSEMBLY\n", "*CLOAD\nRP-HUB, 3, 1.0\n*END ASSEMBLY\n", "CLOAD", "history data"),
-    ("parts_shell", "*RESTART, WRITE", "*TRANSFORM, NSET=RP-HUB\n1., 0., 0., 0., 1., 0.\n*RESTART, WRITE", "TRANSFORM", "inside a step"),
+    ("parts_shell", "*RESTART, WRITE", "*TRANSFORM, NSET=RP-HUB\n1., 0., 0., 0., 1., 0.\n*RESTART, WRITE",
+     "TRANSFORM", "inside a step"),
     ("parts_shell", "*SECTION CONTROLS,", "*NODE\n9, 0., 0., 0.\n*SECTION CONTROLS,", "NODE", "stands at model level"),
-    ("parts_shell", "*END ASSEMBLY\n", "*MATERIAL, NAME=A\n*ELASTIC\n1., .3\n*END ASSEMBLY\n", "MATERIAL", "stands at assembly level"),
+    ("parts_shell", "*END ASSEMBLY\n", "*MATERIAL, NAME=A\n*ELASTIC\n1., .3\n*END ASSEMBLY\n", "MATERIAL",
+     "stands at assembly level"),
     ("parts_shell", "*END ASSEMBLY\n", "", "ASSEMBLY", "never closed"),
-    ("parts_shell", "*END INSTANCE\n*INSTANCE, NAME=CENTRE", "*INSTANCE, NAME=CENTRE", "INSTANCE", "stands at instance level"),
-    ("parts_shell", "*END STEP\n", "*END STEP\n*AMPLITUDE, NAME=B\n0., 0., 1., 1.\n", "AMPLITUDE", "after the first step"),
+    ("parts_shell", "*END INSTANCE\n*INSTANCE, NAME=CENTRE", "*INSTANCE, NAME=CENTRE", "INSTANCE",
+     "stands at instance level"),
+    ("parts_shell", "*END STEP\n", "*END STEP\n*AMPLITUDE, NAME=B\n0., 0., 1., 1.\n", "AMPLITUDE",
+     "after the first step"),
     ("parts_shell", "*END STEP\n", "", "STEP", "never closed"),
     ("parts_shell", "*DISTRIBUTING, COUPLING=STRUCTURAL\n1, 6\n", "", "COUPLING", "must be followed at once"),
     ("parts_shell", "*STATIC\n0.05, 1.0, 1E-6, 0.05\n", "", "STEP", "has no procedure"),
@@ -74,12 +79,14 @@ MISTAKES = [
     ("parts_shell", "PART=PLATE", "PART=PLAT", "INSTANCE", "part PLAT is not defined"),
     ("parts_shell", "MATERIAL=GRADED", "MATERIAL=GRADE", "SHELL SECTION", "material GRADE is not defined"),
     ("parts_shell", "CONTROLS=ENHANCED", "CONTROLS=NOWHERE", "SHELL SECTION", "controls NOWHERE is not defined"),
-    ("parts_shell", "SURFACE=SPOKE-1.RIM-EDGE", "SURFACE=SPOKE-1.EDGE", "COUPLING", "surface SPOKE-1.EDGE is not defined"),
+    ("parts_shell", "SURFACE=SPOKE-1.RIM-EDGE", "SURFACE=SPOKE-1.EDGE", "COUPLING",
+     "surface SPOKE-1.EDGE is not defined"),
     ("parts_shell", "ORIENTATION=AXES-2", "ORIENTATION=AXES-3", "COUPLING", "orientation AXES-3 is not defined"),
     ("parts_shell", "AMPLITUDE=RAMP-X\n", "AMPLITUDE=RAMP-Y\n", "BOUNDARY", "amplitude RAMP-Y is not defined"),
     ("parts_shell", "REF NODE=RP-HUB-1", "REF NODE=RP-HUBS", "COUPLING", "has 2 nodes"),
     ("parts_shell", "RIM-ELEMENTS, E2", "RIM-ELEMENTS, S2", "SURFACE", "S4R has no face S2"),
     ("parts_shell", "*NODE OUTPUT, NSET=RP-HUB\n", "*NODE OUTPUT\n", "NODE OUTPUT", "needs NSET"),
+    ("flat_shell", "*OUTPUT, HISTORY, TIME INTERVAL=0.01", "*OUTPUT, FIELD", "ENERGY OUTPUT", "*OUTPUT, HISTORY"),
     # mesh and sets
     ("parts_shell", "4, 5, 8, 9, 6", "4, 5, 8, 9", "ELEMENT", "3 nodes, S4R has 4"),
     ("parts_shell", "4, 5, 8, 9, 6", "4, 5, 8, 9, 66", "ELEMENT", "such as 66"),
@@ -87,13 +94,16 @@ MISTAKES = [
     ("parts_shell", "9, 30.0, 2.0, 0.0", "8, 30.0, 2.0, 0.0", "NODE", "node number is used twice"),
     ("parts_shell", "9, 30.0, 2.0, 0.0", "9, 30.0, 2.0, 0.o", "NODE", "not a number"),
     ("parts_shell", "TYPE=S4R, ELSET=STRIP", "TYPE=S4Q, ELSET=STRIP", "ELEMENT", "unknown element type S4Q"),
-    ("parts_shell", "*ELSET, ELSET=RIM-ELEMENTS\n3, 4", "*ELSET, ELSET=RIM-ELEMENTS\n" + "3, " * 16 + "4", "ELSET", "17 entries"),
+    ("parts_shell", "*ELSET, ELSET=RIM-ELEMENTS\n3, 4", "*ELSET, ELSET=RIM-ELEMENTS\n" + "3, " * 16 + "4", "ELSET",
+     "17 entries"),
     ("parts_shell", "7, 9, 1", "7, 9, 3", "NSET", "no whole number of steps"),
     ("parts_shell", "*ELSET, ELSET=RIM-ELEMENTS\n3, 4", "*ELSET, ELSET=RIM-ELEMENTS\n3, 40", "ELSET", "such as 40"),
     ("parts_shell", "NSET=ALL, ELSET=STRIP", "NSET=ALL, ELSET=STRIP, UNSORTED", "NSET", "exclude each other"),
     # sections, materials, fields
-    ("parts_shell", "*SHELL SECTION, ELSET=STRIP", "*SHELL SECTION, ELSET=RIM-ELEMENTS", "ELEMENT", "2 S4R elements in part SPOKE have no"),
-    ("flat_shell", "*SHELL SECTION, ELSET=PHASE-FLX9070", "*SHELL SECTION, ELSET=STRIP", "SHELL SECTION", "already have a section"),
+    ("parts_shell", "*SHELL SECTION, ELSET=STRIP", "*SHELL SECTION, ELSET=RIM-ELEMENTS", "ELEMENT",
+     "2 S4R elements in part SPOKE have no"),
+    ("flat_shell", "*SHELL SECTION, ELSET=PHASE-FLX9070", "*SHELL SECTION, ELSET=STRIP", "SHELL SECTION",
+     "already have a section"),
     ("flat_shell", "*RIGID BODY, REF NODE=RP-INDENTER, ELSET=INDENTER\n", "", "ELEMENT", "have no *RIGID BODY"),
     ("parts_shell", "2.0, 5", "2.0, 4", "SHELL SECTION", "odd number"),
     ("parts_shell", "2.0, 5", "0.0, 5", "SHELL SECTION", "not a positive number"),
@@ -110,19 +120,32 @@ MISTAKES = [
     ("parts_shell", "TIE NSET=CENTRE.PLATE", "TIE NSET=SPOKE-1.HUB", "RIGID BODY", "3 nodes already follow *COUPLING"),
     ("parts_shell", "SURFACE=SPOKE-2.HUB-EDGE", "SURFACE=SPOKE-1.HUB-EDGE", "COUPLING", "already follow *COUPLING"),
     ("parts_shell", "RP-HUBS, 3, 1.0, RP-HUB, 3, -1.0", "RP-HUBS, 3, 1.0, RP-HUB, 3", "EQUATION", "an equation is"),
-    ("parts_shell", "RP-HUBS, 3, 1.0, RP-HUB, 3, -1.0", "RP-HUBS, 3, 1.0, RIM-1, 3, -1.0", "EQUATION", "different sizes"),
-    ("parts_shell", "RP-HUBS, 3, 1.0, RP-HUB, 3, -1.0", "RP-HUBS, 1, 1.0, RP-HUB, 3, -1.0", "EQUATION", "is prescribed too"),
-    ("parts_shell", "*END ASSEMBLY\n", "*EQUATION\n2\nRP-HUB, 3, 1., RP-HUB-1, 3, -1.\n*END ASSEMBLY\n", "EQUATION", "was eliminated"),
+    ("parts_shell", "RP-HUBS, 3, 1.0, RP-HUB, 3, -1.0", "RP-HUBS, 3, 1.0, RIM-1, 3, -1.0", "EQUATION",
+     "different sizes"),
+    ("parts_shell", "RP-HUBS, 3, 1.0, RP-HUB, 3, -1.0", "RP-HUBS, 1, 1.0, RP-HUB, 3, -1.0", "EQUATION",
+     "is prescribed too"),
+    ("parts_shell", "*END ASSEMBLY\n", "*EQUATION\n2\nRP-HUB, 3, 1., RP-HUB-1, 3, -1.\n*END ASSEMBLY\n", "EQUATION",
+     "was eliminated"),
     # conditions
     ("parts_shell", "0.5, 0.45, 0.75, 0.7", "0.5, 0.45, 0.45, 0.7", "AMPLITUDE", "times must ascend"),
-    ("parts_shell", "0.0, 0.0, 0.25, 0.2, 0.5, 0.45, 0.75, 0.7", "0.0, 0.0, 0.25, 0.2", "AMPLITUDE", "each but the last holds four"),
+    ("parts_shell", "0.0, 0.0, 0.25, 0.2, 0.5, 0.45, 0.75, 0.7", "0.0, 0.0, 0.25, 0.2", "AMPLITUDE",
+     "each but the last holds four"),
     ("parts_shell", "RP-HUB, 4, 6\n** STEPS", "RP-HUB, 4, 6, 0.1\n** STEPS", "BOUNDARY", "only zero values"),
     ("parts_shell", "RP-HUBS, 4, 6", "RP-HUBS, 4, 7", "BOUNDARY", "no degree of freedom"),
     ("parts_shell", "RP-HUBS, 4, 6", "RP-HUBS, 6, 4", "BOUNDARY", "is below the first"),
     ("parts_shell", "0.05, 1.0, 1E-6, 0.05", "2.0, 1.0, 1E-6, 0.05", "STATIC", "exceeds the step"),
-    ("parts_shell", "-1.0, 0.0, 0.0, 0.0, -1.0, 0.0\n*ORIENT", "-1.0, 0.0, 0.0, -1.0, 0.0, 0.0\n*ORIENT", "TRANSFORM", "no local system"),
+    ("parts_shell", "-1.0, 0.0, 0.0, 0.0, -1.0, 0.0\n*ORIENT", "-1.0, 0.0, 0.0, -1.0, 0.0, 0.0\n*ORIENT",
+     "TRANSFORM", "no local system"),
     ("flat_shell", "AMPLITUDE=PUSH, ", "", "BOUNDARY", "ignored by ABAQUS/Explicit"),
-    ("flat_shell", "TYPE=DISPLACEMENT\nRP-INDENTER, 1, 2", "TYPE=DISPLACEMENT\nRP-INDENTER, PINNED", "BOUNDARY", "model data only"),
+    ("flat_shell", "TYPE=DISPLACEMENT\nRP-INDENTER, 1, 2", "TYPE=DISPLACEMENT\nRP-INDENTER, PINNED", "BOUNDARY",
+     "model data only"),
+    # contact and names
+    ("flat_shell", "TOP, TOOL", "TOP, FLOOR", "CONTACT PAIR", "surface FLOOR is not defined"),
+    ("flat_shell", "*BOUNDARY\nRP-RIM", "*CONTACT PAIR, INTERACTION=SLIDE\nTOP, TOOL\n*BOUNDARY\nRP-RIM",
+     "CONTACT PAIR",
+     "belongs into a step"),
+    ("flat_shell", "INTERACTION=SLIDE", "INTERACTION=GLIDE", "CONTACT PAIR", "interaction GLIDE is not defined"),
+    ("parts_shell", "NSET=RIM-1\n", "NSET=SPOKE-1_RIM\n", "NSET", "ABAQUS's own name"),
     # CalculiX
     ("calculix_solid", "ROT NODE=102", "ROTATION NODE=102", "RIGID BODY", "unknown parameter ROTATION NODE; ROT NODE"),
     ("calculix_solid", "*RIGID BODY, NSET=HUB", "*RIGID BODY, TIE NSET=HUB", "RIGID BODY", "one of these parameters"),
@@ -210,7 +233,14 @@ def test_tables_are_complete() -> None:
             assert set(spec.level) <= {"part", "instance", "assembly", "model", "step"}
             named = {*spec.required, *(p for group in (*spec.one_of, *spec.exclusive) for p in group)}
             assert named <= set(spec.params), keyword
-            assert set(spec.within + spec.then) <= set(dialect(name).keywords), keyword
+            assert {*spec.within, *spec.then} <= set(dialect(name).keywords), keyword
+
+
+def test_temperature_tables_need_temperatures() -> None:
+    """The other way to give a modulus field, which both solvers know."""
+    deck = text("parts_shell").replace("*ELASTIC, DEPENDENCIES=1", "*ELASTIC").replace(", , ", ", ")
+    assert any("initial temperature" in p.message for p in check_deck(deck))
+    assert check_deck(deck.replace("TYPE=FIELD, VARIABLE=1", "TYPE=TEMPERATURE")) == []
 
 
 def test_nonsense_is_reported_and_never_raised() -> None:
