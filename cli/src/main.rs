@@ -1,1 +1,31 @@
-fn main() {}
+//! The command line: one subcommand a file, no mechanics.
+
+mod args;
+mod commands;
+mod console;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use args::{Arguments, Command};
+use console::Console;
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let console = Console::new(arguments.quiet, arguments.verbose);
+    let result = match arguments.command {
+        Command::Design(options) => commands::design::run(&options, &console),
+        Command::Verify(options) => commands::verify::run(&options, &console),
+        Command::Materials => commands::lists::materials(&console),
+        Command::Targets(options) => commands::lists::targets(&options, &console),
+        Command::Schema => commands::lists::schema(&console),
+    };
+    match result {
+        Ok(code) => ExitCode::from(code),
+        Err(error) => {
+            console.error(&error);
+            ExitCode::from(error.exit_code())
+        }
+    }
+}

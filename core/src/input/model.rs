@@ -6,7 +6,7 @@ use super::InputError;
 use crate::elastica::{HubSupport, ThrustChoice};
 use crate::materials::{Material, library};
 use crate::micromechanics::PhaseSet;
-use crate::voxel::{Match, Pattern, Rounding};
+use crate::voxel::{Lattice, Match, Pattern, Rounding};
 
 /// A complete design: the design file with defaults filled in and the contents of the files it names.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -338,6 +338,9 @@ impl DesignInput {
             return Err(InputError::new("decks.graded_elements", format!("{:?}", self.decks.graded_elements), problem)
                 .help("use four or more, or solid_element = \"C3D8I\""));
         }
+        let size = self.voxels.size_mm;
+        Lattice::new(self.strips.length_mm, self.strips.thickness_mm, size)
+            .map_err(|error| InputError::new("voxels.size_mm", size, error.to_string()))?;
         let legal = |c: char| !c.is_control() && !"/\\:*?\"<>|".contains(c);
         if !self.name.chars().all(legal) || self.name.starts_with('.') || self.name.chars().count() > 100 {
             return Err(InputError::new("name", quoted(&self.name), "this is not usable as a file name")

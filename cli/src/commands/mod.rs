@@ -1,0 +1,5 @@
+//! The subcommands.
+
+pub mod design;
+pub mod lists;
+pub mod verify;

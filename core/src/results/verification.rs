@@ -1,0 +1,190 @@
+//! Confirming a design with a solver.
+
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use super::ccx_dat::{NodePrint, parse};
+use super::comparison::{MidlinePoint, compare};
+use crate::design::Design;
+use crate::error::Error;
+use crate::output::Provenance;
+use crate::solver::ccx::{Ccx, Run, Status};
+
+/// Which deck is solved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Model {
+    /// Smooth width, graded modulus.
+    Graded,
+    /// Every voxel its phase.
+    Voxel,
+}
+
+impl Model {
+    /// The deck, relative to the design's folder.
+    #[must_use]
+    pub fn deck(self) -> &'static str {
+        match self {
+            Self::Graded => "calculix/graded_solid.inp",
+            Self::Voxel => "calculix/voxel_solid.inp",
+        }
+    }
+}
+
+/// Contents of `verification.json`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Verification {
+    /// Hash of the design that was verified; a design computed anew has another one.
+    pub design_sha256: String,
+    /// Which model was solved.
+    pub model: Model,
+    /// The solver.
+    pub solver: SolverRecord,
+    /// Largest distance of the mid-line from the target at equal arc lengths, percent of the length.
+    pub max_error_percent: f64,
+    /// Root mean square of that distance.
+    pub rms_error_percent: f64,
+    /// Largest distance from the nearest point of the target.
+    pub max_shape_error_percent: f64,
+    /// Largest distance that the forward model predicts for the voxelised strip, percent of the length.
+    pub predicted_error_percent: Option<f64>,
+    /// Wall time of the solver, s.
+    pub seconds: f64,
+    /// Increments that converged.
+    pub increments: usize,
+    /// Iterations over all increments.
+    pub iterations: usize,
+    /// `[s, x, z]` of the deformed mid-line, rim first, seen from the rim.
+    pub midline_mm: Vec<MidlinePoint>,
+}
+
+/// A solver by name and version.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct SolverRecord {
+    /// Name.
+    pub name: String,
+    /// Version.
+    pub version: String,
+}
+
+/// Solves one of a design's decks with CalculiX in `work` and compares the deformed mid-line with the target.
+///
+/// # Errors
+/// [`Error::Input`] for a deck that is missing or belongs to another design, [`Error::Solver`], [`Error::Cancelled`].
+pub fn verify(
+    design: &Design,
+    folder: &Path,
+    model: Model,
+    ccx: &Ccx,
+    work: &Path,
+    progress: &dyn Fn(Status) -> bool,
+) -> Result<Verification, Error> {
+    let provenance = Provenance::of(design.input());
+    let deck = folder.join(model.deck());
+    check_deck(&deck, &provenance)?;
+    let run = ccx.run(&deck, work, progress)?;
+    let midline = midline(design, &run, &deck)?;
+    let comparison = compare(design.profile(), &midline)
+        .ok_or_else(|| Error::Solver(format!("{}: the solver printed no mid-line", deck.display())))?;
+    Ok(Verification {
+        design_sha256: provenance.design_sha256,
+        model,
+        solver: SolverRecord { name: "CalculiX".to_owned(), version: run.version },
+        max_error_percent: comparison.max_error_percent,
+        rms_error_percent: comparison.rms_error_percent,
+        max_shape_error_percent: comparison.max_shape_error_percent,
+        predicted_error_percent: design.predicted_error().map(|e| 100.0 * e),
+        seconds: run.seconds,
+        increments: run.increments,
+        iterations: run.iterations,
+        midline_mm: midline,
+    })
+}
+
+/// Refuses a deck that is missing or was written for another design.
+fn check_deck(deck: &Path, provenance: &Provenance) -> Result<(), Error> {
+    use std::io::Read;
+    let wrong = |problem: &str, help: &str| {
+        let error = crate::InputError::new("", "", problem).help(help).in_file(&deck.display().to_string());
+        Err(Error::Input(error))
+    };
+    let mut start = Vec::new();
+    match std::fs::File::open(deck).and_then(|file| file.take(8192).read_to_end(&mut start)) {
+        Ok(_) => {}
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+            return wrong(
+                "this deck is not there",
+                "design with decks.solvers holding \"calculix\" and decks.write holding the model to verify",
+            );
+        }
+        Err(error) => return wrong(&format!("this deck cannot be read: {error}"), ""),
+    }
+    if String::from_utf8_lossy(&start).contains(&provenance.design_sha256) {
+        Ok(())
+    } else {
+        wrong("this deck belongs to another design than the design.json beside it", "run design again")
+    }
+}
+
+/// The deformed mid-line at the end of the step, seen from the rim.
+fn midline(design: &Design, run: &Run, deck: &Path) -> Result<Vec<MidlinePoint>, Error> {
+    let broken = |what: String| Error::Solver(format!("{}: {what}", deck.display()));
+    let prints = parse(&run.dat).map_err(|e| broken(format!("the solver's result cannot be read: {e}")))?;
+    let is_midline = |p: &&NodePrint| p.set.eq_ignore_ascii_case("MIDLINE") && p.quantity.starts_with("displacements");
+    let last = prints
+        .iter()
+        .filter(is_midline)
+        .max_by(|a, b| a.time.total_cmp(&b.time))
+        .ok_or_else(|| broken("the solver printed no displacements of MIDLINE".to_owned()))?;
+    if last.time < 1.0 - 1e-6 {
+        return Err(broken(format!("the last mid-line is that at {:.1} % of the step", 100.0 * last.time)));
+    }
+    let start = midline_coordinates(deck, last).map_err(broken)?;
+    let Some(((x0, _), (_, u0))) = start.first().zip(last.rows.first()) else {
+        return Err(broken("the solver printed an empty mid-line".to_owned()));
+    };
+    let length = design.input().strips.length_mm;
+    let points: Vec<MidlinePoint> = start
+        .iter()
+        .zip(&last.rows)
+        .map(|((x, z), (_, u))| [x.clamp(0.0, length), x + u[0] - (x0 + u0[0]), z + u[2]])
+        .collect();
+    match points.iter().flatten().find(|c| !c.is_finite()) {
+        Some(value) => Err(broken(format!("the solver's mid-line holds {value}"))),
+        None => Ok(points),
+    }
+}
+
+/// Flat `(x, z)` of the printed nodes, from the deck itself.
+fn midline_coordinates(deck: &Path, print: &NodePrint) -> Result<Vec<(f64, f64)>, String> {
+    use std::io::BufRead;
+    let file = std::fs::File::open(deck).map_err(|e| e.to_string())?;
+    let wanted: std::collections::HashMap<u64, usize> =
+        print.rows.iter().enumerate().map(|(i, (id, _))| (*id, i)).collect();
+    let mut found = vec![None; print.rows.len()];
+    let mut in_nodes = false;
+    for line in std::io::BufReader::with_capacity(1 << 20, file).lines() {
+        let line = line.map_err(|e| e.to_string())?;
+        if line.starts_with('*') {
+            in_nodes = line.split(',').next().is_some_and(|k| k.trim().eq_ignore_ascii_case("*NODE"));
+            continue;
+        }
+        if !in_nodes {
+            continue;
+        }
+        let mut cells = line.split(',').map(str::trim);
+        let Some(place) = cells.next().and_then(|id| id.parse().ok()).and_then(|id: u64| wanted.get(&id)) else { continue };
+        let coordinates: Vec<f64> = cells.filter_map(|c| c.parse().ok()).collect();
+        if let [x, _, z] = coordinates[..] {
+            found[*place] = Some((x, z));
+        }
+    }
+    found.into_iter().collect::<Option<Vec<_>>>().ok_or_else(|| "MIDLINE names nodes the deck does not have".to_owned())
+}
+
+/// Where a verification's picture and figures are written, relative to the design's folder.
+#[must_use]
+pub fn output_files(folder: &Path) -> (PathBuf, PathBuf) {
+    (folder.join("verification.json"), folder.join("verification.svg"))
+}

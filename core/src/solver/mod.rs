@@ -1,0 +1,3 @@
+//! External solvers.
+
+pub mod ccx;
