@@ -126,3 +126,18 @@ fn the_schema_knows_every_key_and_its_unit() {
         assert_eq!(node["x-unit"].as_str(), parameter.unit, "{}", parameter.key);
     }
 }
+
+/// `VOXELASTICA_UPDATE_DOCS=1 cargo test` rewrites the reference.
+#[test]
+fn the_documented_keys_are_those_of_the_table() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/design-file.md");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let marker = "<!-- keys: made from the parameter table; `cargo test` says when they differ -->\n";
+    let (before, documented) = text.split_once(marker).unwrap();
+    let table = voxelastica_core::input::reference::markdown();
+    if std::env::var_os("VOXELASTICA_UPDATE_DOCS").is_some() {
+        std::fs::write(&path, format!("{before}{marker}{table}")).unwrap();
+    } else {
+        assert_eq!(documented, table, "run the tests once with VOXELASTICA_UPDATE_DOCS=1");
+    }
+}

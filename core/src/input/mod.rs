@@ -12,6 +12,7 @@ mod error;
 pub mod files;
 pub mod model;
 pub mod parameters;
+pub mod reference;
 pub mod schema;
 
 pub use error::InputError;
