@@ -1,15 +1,18 @@
 //! Voxelastica's mechanics and formats: from a target meridian to widths, graded modulus, voxels and finite-element decks.
 
+pub mod deck;
 pub mod design;
 pub mod elastica;
 mod error;
 pub mod input;
 pub mod materials;
+pub mod mesh;
 pub mod micromechanics;
 pub mod modulus_field;
 mod numerics;
 pub mod output;
 pub mod profile;
+pub mod progress;
 pub mod target;
 pub mod voxel;
 

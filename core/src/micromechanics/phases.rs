@@ -112,6 +112,12 @@ impl PhaseSet {
         self.phases[self.phases.len() - 1].modulus_mpa
     }
 
+    /// Fraction that the intermediate of three phases keeps.
+    #[must_use]
+    pub fn intermediate_fraction(&self) -> f64 {
+        self.intermediate_fraction
+    }
+
     /// Largest contrast that the phases reach.
     #[must_use]
     pub fn reach(&self) -> f64 {

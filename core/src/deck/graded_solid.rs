@@ -1,0 +1,90 @@
+//! One spoke as a solid with a smooth outline, its modulus a nodal field.
+
+use super::keywords::heading::heading;
+use super::keywords::{elements, initial, materials, sets};
+use super::sink::Sink;
+use super::solid::SolidModel;
+use super::{Deck, DeckError};
+use crate::design::Design;
+use crate::input::model::DeckSolver;
+use crate::mesh::{Block, Spacing};
+use crate::output::Provenance;
+
+/// The deck.
+pub(super) struct GradedSolid<'a> {
+    model: SolidModel<'a>,
+    /// Designed modulus at every plane of nodes, MPa.
+    moduli: Vec<f64>,
+}
+
+impl<'a> GradedSolid<'a> {
+    pub(super) fn new(design: &'a Design, solver: DeckSolver) -> Self {
+        let (decks, strips) = (&design.input().decks, &design.input().strips);
+        let [along, across, through] = match solver {
+            DeckSolver::Abaqus => decks.graded_elements,
+            DeckSolver::Calculix => decks.calculix_graded_elements,
+        };
+        let station = |i: usize| design.width_and_modulus(strips.length_mm * i as f64 / along as f64);
+        let (widths, moduli) = (0..=along).map(station).unzip();
+        let block =
+            Block::new(strips.length_mm, strips.thickness_mm, through, vec![across; along], Spacing::Width(widths));
+        Self { model: SolidModel::new(design, solver, block), moduli }
+    }
+
+    /// Runs of elements that contain a phase, from the mixture in the middle of each slice.
+    fn runs(&self, phase: usize) -> Vec<(u64, u64)> {
+        let (block, phases) = (&self.model.block, self.model.design.phases());
+        let mut runs: Vec<(u64, u64)> = Vec::new();
+        for (i, ends) in self.moduli.windows(2).enumerate() {
+            if phases.fractions(0.5 * (ends[0] + ends[1])).values[phase] <= 1e-9 {
+                continue;
+            }
+            let (first, last) = (block.first_element(i), block.first_element(i + 1) - 1);
+            match runs.last_mut() {
+                Some(run) if run.1 + 1 == first => run.1 = last,
+                _ => runs.push((first, last)),
+            }
+        }
+        runs
+    }
+}
+
+impl Deck for GradedSolid<'_> {
+    fn nodes(&self) -> u64 {
+        self.model.nodes()
+    }
+
+    fn elements(&self) -> u64 {
+        self.model.block.elements()
+    }
+
+    fn write(&self, provenance: &Provenance, sink: &mut Sink<'_>) -> Result<(), DeckError> {
+        let model = &self.model;
+        let phases = model.design.phases();
+        let field = if model.layout.is_abaqus() { "Field variable 1" } else { "The temperature" };
+        let mut paragraphs = vec![format!(
+            "Model: one spoke with its smooth outline, {} elements, the designed modulus as a nodal field. {field} of a \
+             node is its modulus in MPa; the material's table over it is exact, with Poisson's ratio and density mixed by \
+             volume.",
+            model.element
+        )];
+        paragraphs.extend(model.paragraphs());
+        paragraphs.push("PHASE-<NAME>: elements whose mixture contains the phase.".to_owned());
+        heading(sink, &model.design.input().name, "graded solid", provenance, &paragraphs)?;
+        model.model(sink, |sink| {
+            elements::elements(sink, &model.block, &model.element, "SPOKE")?;
+            for (i, phase) in phases.phases().iter().enumerate() {
+                let runs = self.runs(i);
+                if !runs.is_empty() {
+                    sets::element_ranges(sink, &format!("PHASE-{}", phase.label()), runs.into_iter())?;
+                }
+            }
+            model.section(sink, "SPOKE", "GRADED")
+        })?;
+        model.section_controls(sink)?;
+        materials::graded(sink, "GRADED", phases, model.layout)?;
+        model.amplitudes(sink)?;
+        initial::modulus_field(sink, model.layout, &model.prefix(), &model.block, &self.moduli)?;
+        model.step(sink)
+    }
+}

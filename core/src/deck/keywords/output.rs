@@ -1,0 +1,50 @@
+//! Output requests.
+
+use crate::deck::DeckError;
+use crate::deck::layout::Layout;
+use crate::deck::sink::Sink;
+
+use super::constraints::Reference;
+
+/// Nodes up to which every fifth increment is kept as a field; beyond, only the last one.
+const MANY_NODES: u64 = 100_000;
+
+/// Displacements and stresses of the whole model now and then, the mid-line and the reactions in every increment.
+pub(crate) fn requests(
+    sink: &mut Sink<'_>,
+    layout: Layout,
+    nodes: u64,
+    midlines: &[&str],
+    references: &[&Reference],
+) -> Result<(), DeckError> {
+    let frequency = if nodes > MANY_NODES { 2000 } else { 5 };
+    if layout.is_abaqus() {
+        sink.line(&format!("*OUTPUT, FIELD, FREQUENCY={frequency}"))?;
+        sink.line("*NODE OUTPUT")?;
+        sink.line("U,COORD")?;
+        sink.line("*ELEMENT OUTPUT")?;
+        sink.line("S,LE")?;
+        sink.line("*OUTPUT, HISTORY, FREQUENCY=1")?;
+        for set in midlines {
+            sink.line(&format!("*NODE OUTPUT, NSET={set}"))?;
+            sink.line("U,COORD")?;
+        }
+        for reference in references {
+            sink.line(&format!("*NODE OUTPUT, NSET={}", reference.name))?;
+            sink.line("U,UR,RF,RM")?;
+        }
+        return Ok(());
+    }
+    for set in midlines {
+        sink.line(&format!("*NODE PRINT, NSET={set}"))?;
+        sink.line("U")?;
+    }
+    for set in references.iter().flat_map(|r| [r.name, r.rotation_name]) {
+        sink.line(&format!("*NODE PRINT, NSET={set}"))?;
+        sink.line("U,RF")?;
+    }
+    sink.line(&format!("*NODE FILE, FREQUENCY={frequency}"))?;
+    sink.line("U")?;
+    sink.line(&format!("*EL FILE, FREQUENCY={frequency}"))?;
+    sink.line("S")
+}

@@ -1,0 +1,148 @@
+//! Finite-element decks for ABAQUS and CalculiX.
+//!
+//! A deck is a table of contents over one writer a keyword group ([`keywords`]): heading, nodes, elements, sets, sections,
+//! materials, amplitudes, initial conditions, constraints, step, boundary conditions, output. It is streamed through a
+//! [`sink`], which renders long blocks in parallel and holds only a few megabytes of them; the same pass over a counting
+//! sink estimates its size. ABAQUS decks come as parts, instances and an assembly or flat, CalculiX decks flat
+//! ([`layout`]).
+//!
+//! Units are mm, N, MPa, tonne, s, K. One strip lies along x, its rim at `x = 0`, its mid-plane at `z = 0`.
+
+mod graded_solid;
+mod keywords;
+mod layout;
+mod number;
+mod schedule;
+mod sink;
+mod solid;
+mod voxel_solid;
+
+use std::io::{self, Write};
+
+use crate::design::Design;
+use crate::input::model::{DeckKind, DeckSolver};
+use crate::output::Provenance;
+use crate::progress::Progress;
+use sink::Sink;
+
+/// A deck that can be written, and how large it will be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct DeckPlan {
+    /// What it models.
+    pub kind: DeckKind,
+    /// The solver it is for.
+    pub solver: DeckSolver,
+    /// Number of nodes, reference nodes included.
+    pub nodes: u64,
+    /// Number of elements.
+    pub elements: u64,
+    /// Estimated size, bytes; within a few percent.
+    pub bytes: u64,
+}
+
+impl DeckPlan {
+    /// Where the deck goes in the design's folder.
+    #[must_use]
+    pub fn relative_path(&self) -> &'static str {
+        match (self.solver, self.kind) {
+            (DeckSolver::Abaqus, DeckKind::GradedShell) => "abaqus/graded_shell.inp",
+            (DeckSolver::Abaqus, DeckKind::GradedSolid) => "abaqus/graded_solid.inp",
+            (DeckSolver::Abaqus, DeckKind::VoxelSolid) => "abaqus/voxel_solid.inp",
+            (DeckSolver::Abaqus, DeckKind::VoxelShell) => "abaqus/voxel_shell.inp",
+            (DeckSolver::Calculix, DeckKind::GradedShell) => "calculix/graded_shell.inp",
+            (DeckSolver::Calculix, DeckKind::GradedSolid) => "calculix/graded_solid.inp",
+            (DeckSolver::Calculix, DeckKind::VoxelSolid) => "calculix/voxel_solid.inp",
+            (DeckSolver::Calculix, DeckKind::VoxelShell) => "calculix/voxel_shell.inp",
+        }
+    }
+}
+
+/// Why a deck was not written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum DeckError {
+    /// The writer failed.
+    #[error(transparent)]
+    Io(#[from] io::Error),
+    /// [`Progress`] asked to stop.
+    #[error("cancelled")]
+    Cancelled,
+    /// [`plan`] does not offer this deck for this design.
+    #[error("{path} does not exist for this design: {reason}")]
+    NotOffered {
+        /// Where the deck would go.
+        path: &'static str,
+        /// Why not.
+        reason: &'static str,
+    },
+}
+
+/// The decks that a design asks for and that make sense for it: shells for ABAQUS only, flowers for domes only.
+#[must_use]
+pub fn plan(design: &Design) -> Vec<DeckPlan> {
+    let decks = &design.input().decks;
+    let mut plans: Vec<DeckPlan> = Vec::new();
+    for solver in &decks.solvers {
+        for kind in &decks.write {
+            let known = plans.iter().any(|p| p.kind == *kind && p.solver == *solver);
+            if !known && let Some(plan) = plan_one(design, *kind, *solver) {
+                plans.push(plan);
+            }
+        }
+    }
+    plans
+}
+
+fn plan_one(design: &Design, kind: DeckKind, solver: DeckSolver) -> Option<DeckPlan> {
+    let deck = prepare(design, kind, solver).ok()?;
+    let input = design.input();
+    // A hash has one length, so a stand-in gives the size.
+    let provenance = Provenance {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        seed: input.voxels.seed,
+        design_sha256: "0".repeat(64),
+    };
+    let mut sink = Sink::counting();
+    deck.write(&provenance, &mut sink).ok()?;
+    Some(DeckPlan { kind, solver, nodes: deck.nodes(), elements: deck.elements(), bytes: sink.written() })
+}
+
+/// Writes a deck, streaming. `progress` is told the bytes written so far.
+///
+/// # Errors
+/// [`DeckError::Io`] where `out` fails, [`DeckError::Cancelled`] where `progress` says so, [`DeckError::NotOffered`] for a
+/// plan of another design.
+pub fn write(
+    design: &Design,
+    plan: &DeckPlan,
+    provenance: &Provenance,
+    out: &mut dyn Write,
+    progress: Progress<'_>,
+) -> Result<(), DeckError> {
+    let deck = prepare(design, plan.kind, plan.solver)
+        .map_err(|reason| DeckError::NotOffered { path: plan.relative_path(), reason })?;
+    let mut sink = Sink::new(out, progress);
+    deck.write(provenance, &mut sink)?;
+    sink.finish()
+}
+
+/// A kind of deck, prepared for one design.
+trait Deck {
+    /// Number of nodes, reference nodes included.
+    fn nodes(&self) -> u64;
+    /// Number of elements.
+    fn elements(&self) -> u64;
+    /// Writes it: the table of contents.
+    fn write(&self, provenance: &Provenance, sink: &mut Sink<'_>) -> Result<(), DeckError>;
+}
+
+/// The deck of a kind, or why there is none.
+fn prepare<'a>(design: &'a Design, kind: DeckKind, solver: DeckSolver) -> Result<Box<dyn Deck + 'a>, &'static str> {
+    match (kind, solver) {
+        (DeckKind::GradedSolid, _) => Ok(Box::new(graded_solid::GradedSolid::new(design, solver))),
+        (DeckKind::VoxelSolid, _) => Ok(Box::new(voxel_solid::VoxelSolid::new(design, solver))),
+        (_, DeckSolver::Calculix) => Err("its shells diverge in large rotations"),
+        (_, _) if design.input().is_strip() => Err("a rectangular strip is no flower"),
+        (DeckKind::GradedShell | DeckKind::VoxelShell, DeckSolver::Abaqus) => Err("not written yet"),
+    }
+}

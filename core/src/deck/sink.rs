@@ -1,0 +1,174 @@
+//! Where a deck goes: buffered, counted, rendered in parallel, cancellable.
+
+use std::io::Write;
+use std::ops::Range;
+
+use super::DeckError;
+use crate::progress::Progress;
+
+/// Text is handed on in pieces of this size, bytes.
+const FLUSH: usize = 1 << 20;
+/// Work in one parallel piece, in units of [`Rows::weight`] (nodes or elements).
+const PIECE: usize = 8192;
+/// Groups of rows that are rendered to estimate a block's size.
+const SAMPLES: usize = 24;
+
+enum Target<'a> {
+    Writer { out: &'a mut dyn Write, progress: Progress<'a> },
+    Counter,
+}
+
+/// Receives a deck's text. Only ASCII lines of at most 256 characters are legal in ABAQUS; the writers see to that.
+pub(crate) struct Sink<'a> {
+    target: Target<'a>,
+    buffer: Vec<u8>,
+    written: u64,
+}
+
+/// A long block of lines made of rows that can be rendered independently.
+pub(crate) trait Rows: Sync {
+    /// Number of rows.
+    fn rows(&self) -> usize;
+    /// Rows in a group that looks alike along the block (a plane, a slice).
+    fn group(&self) -> usize;
+    /// Lines a row has at most: the share of the work.
+    fn weight(&self, row: usize) -> usize;
+    /// Appends the text of some rows.
+    fn render(&self, rows: Range<usize>, out: &mut Vec<u8>);
+}
+
+impl<'a> Sink<'a> {
+    /// A sink that writes.
+    pub(crate) fn new(out: &'a mut dyn Write, progress: Progress<'a>) -> Self {
+        Self { target: Target::Writer { out, progress }, buffer: Vec::new(), written: 0 }
+    }
+
+    /// A sink that only counts bytes, and estimates those of long blocks from samples.
+    pub(crate) fn counting() -> Self {
+        Self { target: Target::Counter, buffer: Vec::new(), written: 0 }
+    }
+
+    /// Bytes so far.
+    pub(crate) fn written(&self) -> u64 {
+        self.written + self.buffer.len() as u64
+    }
+
+    /// A line.
+    pub(crate) fn line(&mut self, text: &str) -> Result<(), DeckError> {
+        debug_assert!(text.is_ascii() && text.len() <= 256, "{text}");
+        self.buffer.extend_from_slice(text.as_bytes());
+        self.buffer.push(b'\n');
+        if self.buffer.len() >= FLUSH { self.flush() } else { Ok(()) }
+    }
+
+    /// Numbers, sixteen a line (CalculiX and ABAQUS read no more).
+    pub(crate) fn list(&mut self, numbers: impl Iterator<Item = u64>) -> Result<(), DeckError> {
+        let mut line = String::new();
+        let mut buffer = itoa::Buffer::new();
+        for (i, number) in numbers.enumerate() {
+            if i > 0 && i % 16 == 0 {
+                self.line(&line)?;
+                line.clear();
+            } else if i > 0 {
+                line.push(',');
+            }
+            line.push_str(buffer.format(number));
+        }
+        if line.is_empty() { Ok(()) } else { self.line(&line) }
+    }
+
+    /// A long block. Pieces are rendered in parallel while the previous batch is written, so memory stays bounded.
+    pub(crate) fn rows(&mut self, block: &dyn Rows) -> Result<(), DeckError> {
+        if matches!(self.target, Target::Counter) {
+            self.written += estimate(block);
+            return Ok(());
+        }
+        self.flush()?;
+        let batch = 4 * rayon::current_num_threads().max(1);
+        let mut pieces = pieces(block);
+        let (mut ready, mut next): (Vec<Vec<u8>>, Vec<Vec<u8>>) = (Vec::new(), vec![Vec::new(); batch]);
+        loop {
+            let ranges: Vec<Range<usize>> = pieces.by_ref().take(batch).collect();
+            rayon::in_place_scope(|scope| {
+                for (buffer, range) in next.iter_mut().zip(&ranges) {
+                    let range = range.clone();
+                    scope.spawn(move |_| block.render(range, buffer));
+                }
+                ready.iter().try_for_each(|piece| self.emit(piece))
+            })?;
+            if ranges.is_empty() {
+                return Ok(());
+            }
+            std::mem::swap(&mut ready, &mut next);
+            next.resize_with(batch, Vec::new);
+            next.iter_mut().for_each(Vec::clear);
+        }
+    }
+
+    /// Hands on what is left.
+    pub(crate) fn finish(mut self) -> Result<(), DeckError> {
+        self.flush()?;
+        match self.target {
+            Target::Writer { out, .. } => Ok(out.flush()?),
+            Target::Counter => Ok(()),
+        }
+    }
+
+    fn flush(&mut self) -> Result<(), DeckError> {
+        let buffer = std::mem::take(&mut self.buffer);
+        let result = self.emit(&buffer);
+        self.buffer = buffer;
+        self.buffer.clear();
+        result
+    }
+
+    fn emit(&mut self, text: &[u8]) -> Result<(), DeckError> {
+        self.written += text.len() as u64;
+        match &mut self.target {
+            Target::Writer { out, progress } => {
+                if !text.is_empty() {
+                    out.write_all(text)?;
+                }
+                if progress(self.written) { Ok(()) } else { Err(DeckError::Cancelled) }
+            }
+            Target::Counter => Ok(()),
+        }
+    }
+}
+
+/// Ranges of rows of about [`PIECE`] lines each.
+fn pieces(block: &dyn Rows) -> impl Iterator<Item = Range<usize>> {
+    let rows = block.rows();
+    let mut start = 0;
+    std::iter::from_fn(move || {
+        let (mut end, mut weight) = (start, 0);
+        while end < rows && weight < PIECE {
+            weight += block.weight(end);
+            end += 1;
+        }
+        let piece = start..end;
+        start = end;
+        (!piece.is_empty()).then_some(piece)
+    })
+}
+
+/// Size of a block, bytes, from the middle group of evenly spread strata; exact for short blocks.
+fn estimate(block: &dyn Rows) -> u64 {
+    let group = block.group().max(1);
+    let groups = block.rows() / group;
+    let weight = |rows: Range<usize>| rows.map(|r| block.weight(r)).sum::<usize>() as f64;
+    let mut out = Vec::new();
+    let mut bytes = 0.0;
+    for stratum in 0..SAMPLES {
+        let (from, to) = (groups * stratum / SAMPLES, groups * (stratum + 1) / SAMPLES);
+        if from == to {
+            continue;
+        }
+        let middle = usize::midpoint(from, to);
+        let sample = middle * group..(middle + 1) * group;
+        out.clear();
+        block.render(sample.clone(), &mut out);
+        bytes += out.len() as f64 * weight(from * group..to * group) / weight(sample).max(1.0);
+    }
+    bytes.ceil() as u64
+}

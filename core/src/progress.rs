@@ -1,0 +1,10 @@
+//! How long work reports and is cancelled.
+
+/// Told how many bytes were written so far; returning `false` cancels the work.
+pub type Progress<'a> = &'a (dyn Fn(u64) -> bool + Sync);
+
+/// A [`Progress`] that never cancels and shows nothing.
+#[must_use]
+pub fn ignore(_bytes: u64) -> bool {
+    true
+}
