@@ -13,6 +13,7 @@ mod numerics;
 pub mod output;
 pub mod profile;
 pub mod progress;
+pub mod results;
 pub mod target;
 pub mod voxel;
 
