@@ -428,16 +428,13 @@ fn check_reach(input: &DesignInput, phases: &PhaseSet, body: &Body, target: Opti
                 .and_then(|w| inverse::solve(target.curve.as_ref(), &target.stations, &w, other.0, other.1));
             if let Ok(found) = found.as_ref().map(|s| s.contrast)
                 && other != now
-                && found < contrast * 0.999
+                && found <= reach
             {
-                helps.push(format!("{words} needs {found:.3}"));
+                helps.push(format!("{words} needs only {found:.3}"));
             }
         }
     }
-    helps.push(format!("so would phases whose moduli differ by a factor of {contrast:.2} or more"));
-    if helps.len() == 1 {
-        helps = vec![format!("use phases whose moduli differ by a factor of {contrast:.2} or more")];
-    }
+    helps.push(format!("use phases whose moduli differ by a factor of {contrast:.2} or more"));
     let names: Vec<String> = phases.phases().iter().map(|p| format!("{} ({} MPa)", p.name, p.modulus_mpa)).collect();
     Err(Error::infeasible(
         &input.name,
@@ -447,7 +444,7 @@ fn check_reach(input: &DesignInput, phases: &PhaseSet, body: &Body, target: Opti
             softest_mm,
             stiffest_mm,
             phases: names.join(" and "),
-            help: helps.join(", "),
+            help: helps.join(", or "),
         },
     ))
 }
