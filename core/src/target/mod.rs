@@ -1,8 +1,20 @@
 //! Target meridians: the curve a spoke must take, as a function of arc length.
 
+mod banded;
 mod error;
+mod fitted;
+mod ordering;
+mod points;
+mod revolution;
+mod scale;
+mod smoothing;
+mod spline_curve;
 
-pub use error::TargetError;
+pub use error::{Row, TargetError};
+pub use fitted::FittedMeridian;
+pub use points::{MAX_POINTS, MAX_POINTS_BYTES, PointTable, read_points, read_points_file};
+pub use revolution::RevolutionFit;
+pub use spline_curve::SplineMeridian;
 
 /// The state of a meridian at one arc length.
 ///
