@@ -129,10 +129,17 @@ pub enum TargetError {
          least {needed}: refine the mesh along the meridian, or check the axis"
     )]
     TooFewRings { found: usize, needed: usize },
+    /// Too few vertices to tell whether the mesh is round.
+    #[error(
+        "the outer surface of the mesh has {found} vertices about its axis; at least {needed} are needed to tell whether \
+         it is round: refine the mesh, or check the axis"
+    )]
+    TooFewVertices { found: usize, needed: usize },
     /// A mesh too far from a surface of revolution.
     #[error(
         "the mesh is no surface of revolution: its vertices lie {share_percent:.2} % of the rim radius (rms) off the \
-         best one, the limit is {limit_percent} %; check the axis, and leave out what is not the dome"
+         best one, the limit is {limit_percent} %; leave out what is not the dome, check the axis, and name it where the \
+         dome does not go all the way round"
     )]
     NotARevolution { share_percent: f64, limit_percent: f64 },
 }

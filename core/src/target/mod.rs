@@ -3,18 +3,22 @@
 mod banded;
 mod error;
 mod fitted;
+mod mesh_file;
 mod ordering;
 mod points;
 mod revolution;
 mod scale;
 mod smoothing;
 mod spline_curve;
+mod triangle_mesh;
 
 pub use error::{Row, TargetError};
 pub use fitted::FittedMeridian;
+pub use mesh_file::{MAX_MESH_BYTES, MeshFormat, read_mesh, read_mesh_file};
 pub use points::{MAX_POINTS, MAX_POINTS_BYTES, PointTable, read_points, read_points_file};
 pub use revolution::RevolutionFit;
 pub use spline_curve::SplineMeridian;
+pub use triangle_mesh::{MAX_TRIANGLES, MAX_VERTICES, TriangleMesh};
 
 /// The state of a meridian at one arc length.
 ///
