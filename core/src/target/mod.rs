@@ -1,17 +1,21 @@
 //! Target meridians: the curve a spoke must take, as a function of arc length.
 
+mod axis;
 mod banded;
 mod error;
 mod fitted;
 mod mesh_file;
 mod ordering;
+mod outline;
 mod points;
+mod profile;
 mod revolution;
 mod scale;
 mod smoothing;
 mod spline_curve;
 mod triangle_mesh;
 
+pub use axis::Axis;
 pub use error::{Row, TargetError};
 pub use fitted::FittedMeridian;
 pub use mesh_file::{MAX_MESH_BYTES, MeshFormat, read_mesh, read_mesh_file};

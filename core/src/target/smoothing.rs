@@ -55,18 +55,29 @@ impl PiecewiseCurve {
         self.step
     }
 
+    /// `t` no further than a knot interval outside the curve, where its polynomials still mean something.
+    pub fn clamped(&self, t: f64) -> f64 {
+        let finish = self.start + self.step * self.pieces.len() as f64;
+        t.clamp(self.start - self.step, finish + self.step)
+    }
+
     /// The same curve, larger by `factor`, with the same parameter.
     pub fn scaled(&self, factor: f64) -> Self {
         let pieces = self.pieces.iter().map(|piece| piece.map(|c| c.map(|a| a * factor))).collect();
         Self { pieces, ..*self }
     }
 
-    /// Position and derivatives at `t`; beyond the ends the outermost polynomial goes on.
-    pub fn at(&self, t: f64) -> Derivatives {
+    /// The piece at `t` and the place in it; beyond the ends the outermost polynomial goes on.
+    fn piece(&self, t: f64) -> Option<(&[[f64; DEGREE + 1]; 2], f64)> {
         let place = (t - self.start) / self.step;
         let index = (place.max(0.0) as usize).min(self.pieces.len().saturating_sub(1));
-        let u = place - index as f64;
-        let Some(piece) = self.pieces.get(index) else { return [[0.0; 2]; 4] };
+        self.pieces.get(index).map(|piece| (piece, place - index as f64))
+    }
+
+    /// Position and derivatives at `t`.
+    pub fn at(&self, t: f64) -> Derivatives {
+        let Some((piece, u)) = self.piece(t) else { return [[0.0; 2]; 4] };
+        let per = 1.0 / self.step;
         let mut out = [[0.0; 2]; 4];
         for k in 0..2 {
             // Horner's rule for the Taylor coefficients.
@@ -77,11 +88,26 @@ impl PiecewiseCurve {
                 b = b * u + a;
                 a = a * u + coefficient;
             }
-            let per = 1.0 / self.step;
             out[0][k] = a;
             out[1][k] = b * per;
             out[2][k] = 2.0 * c * per * per;
             out[3][k] = 6.0 * d * per * per * per;
+        }
+        out
+    }
+
+    /// Position and first derivative at `t`.
+    pub fn position_and_velocity(&self, t: f64) -> [[f64; 2]; 2] {
+        let Some((piece, u)) = self.piece(t) else { return [[0.0; 2]; 2] };
+        let mut out = [[0.0; 2]; 2];
+        for k in 0..2 {
+            let (mut a, mut b) = (0.0, 0.0);
+            for coefficient in piece[k].iter().rev() {
+                b = b * u + a;
+                a = a * u + coefficient;
+            }
+            out[0][k] = a;
+            out[1][k] = b / self.step;
         }
         out
     }
@@ -96,25 +122,28 @@ pub(super) struct Fit {
     pub freedom: f64,
 }
 
-/// Fits samples with parameters in `[0, end]`; with `mirror`, `end` is the apex, where the curve meets the axis.
+/// Fits samples with parameters from about 0 to `end`; with `mirror`, `end` is the apex, where the curve meets the axis.
 ///
-/// Samples past the apex are allowed: noise may put a point there.
+/// Noise may put samples a little outside that range; the curve reaches as far as they do.
 pub(super) fn fit(samples: &[Sample], end: f64, mirror: bool) -> Result<Fit, TargetError> {
     let no_fit = |reason| TargetError::NoFit { points: samples.len(), reason };
-    if !(end > 0.0 && end.is_finite()) {
+    let start = samples.iter().map(|s| s.t).fold(0.0, f64::min);
+    let finish = samples.iter().map(|s| s.t).fold(end, f64::max);
+    if !(end > 0.0 && start.is_finite() && finish.is_finite()) {
         return Err(no_fit("the curve has no length"));
     }
-    let mut groups = grouped(samples, end);
-    // Half as many intervals as samples leave the data a say in every coefficient.
+    let mut groups = grouped(samples, start, finish);
+    // Fewer intervals than samples leave the data a say in every coefficient.
     let mut intervals = (groups.len() * 2 / 3).clamp(6, MAX_INTERVALS);
-    let mut domain = end;
+    let mut domain = finish - start;
     if mirror {
         let reflected = |s: &Sample| Sample { t: 2.0 * end - s.t, position: [-s.position[0], s.position[1]], ..*s };
         let twins: Vec<Sample> = groups.iter().map(reflected).collect();
         groups.extend(twins);
         intervals *= 2;
-        domain = 2.0 * end;
+        domain = 2.0 * (end - start).max(finish - end);
     }
+    groups.iter_mut().for_each(|s| s.t -= start);
     let extent = super::ordering::extent(&groups.iter().map(|s| s.position).collect::<Vec<_>>());
     let step = domain / intervals as f64;
     let system = System::new(&groups, step, intervals);
@@ -130,17 +159,17 @@ pub(super) fn fit(samples: &[Sample], end: f64, mirror: bool) -> Result<Fit, Tar
         return Err(no_fit("the numbers overflow"));
     }
     let freedom = system.freedom(best).unwrap_or(0.0);
-    Ok(Fit { curve: piecewise(&coefficients, step), freedom })
+    Ok(Fit { curve: PiecewiseCurve { start, ..piecewise(&coefficients, step) }, freedom })
 }
 
 /// Neighbours averaged into groups, where there are many samples.
-fn grouped(samples: &[Sample], end: f64) -> Vec<Sample> {
+fn grouped(samples: &[Sample], start: f64, finish: f64) -> Vec<Sample> {
     if samples.len() <= MAX_SAMPLES {
         return samples.to_vec();
     }
     let mut sums = vec![[0.0; 4]; MAX_SAMPLES];
     for s in samples {
-        let place = (s.t / end * MAX_SAMPLES as f64).max(0.0) as usize;
+        let place = ((s.t - start) / (finish - start) * MAX_SAMPLES as f64).max(0.0) as usize;
         if let Some(sum) = sums.get_mut(place.min(MAX_SAMPLES - 1)) {
             for (total, value) in sum.iter_mut().zip([1.0, s.t, s.position[0], s.position[1]]) {
                 *total += s.weight * value;

@@ -125,8 +125,8 @@ fn wrapped(angle: f64) -> f64 {
 }
 
 pub(super) fn speed(curve: &PiecewiseCurve, t: f64) -> f64 {
-    let first = curve.at(t)[1];
-    first[0].hypot(first[1])
+    let [_, first] = curve.position_and_velocity(t);
+    (first[0] * first[0] + first[1] * first[1]).sqrt()
 }
 
 /// Arc length between two parameters at most a knot interval apart: Gauss's rule with five points.
