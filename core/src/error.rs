@@ -81,7 +81,9 @@ impl Infeasible {
     pub fn key(&self) -> &'static str {
         match self {
             Self::Elastica(ElasticaError::NoWidth { .. }) => "strips.hub_radius_mm",
-            Self::Elastica(ElasticaError::EqualEndsUndetermined { .. } | ElasticaError::EqualEndsHeld) => "thrust.choice",
+            Self::Elastica(ElasticaError::EqualEndsUndetermined { .. } | ElasticaError::EqualEndsHeld) => {
+                "thrust.choice"
+            }
             Self::Elastica(_) => "target",
             Self::Contrast { .. } => "materials.phases",
         }

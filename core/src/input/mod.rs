@@ -14,6 +14,7 @@ pub mod model;
 pub mod parameters;
 pub mod reference;
 pub mod schema;
+pub mod target_file;
 
 pub use error::InputError;
 pub use model::{

@@ -174,7 +174,9 @@ fn midline_coordinates(deck: &Path, print: &NodePrint) -> Result<Vec<(f64, f64)>
             continue;
         }
         let mut cells = line.split(',').map(str::trim);
-        let Some(place) = cells.next().and_then(|id| id.parse().ok()).and_then(|id: u64| wanted.get(&id)) else { continue };
+        let Some(place) = cells.next().and_then(|id| id.parse().ok()).and_then(|id: u64| wanted.get(&id)) else {
+            continue;
+        };
         let coordinates: Vec<f64> = cells.filter_map(|c| c.parse().ok()).collect();
         if let [x, _, z] = coordinates[..] {
             found[*place] = Some((x, z));
