@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import shutil
 import signal
@@ -89,6 +90,62 @@ def test_missing_files_are_named(program: Path, tmp_path: Path) -> None:
 def test_wrong_meridians(program: Path, tmp_path: Path, rows: str, words: list[str]) -> None:
     (tmp_path / "meridian.csv").write_text(rows, encoding="utf-8")
     fails(tmp_path, POINTS, 2, "target.file", *words)
+
+
+def dome(stretch: float = 1.0, rings: int = 12, segments: int = 24) -> str:
+    """A hemisphere as OBJ, stretched along x."""
+    lines = []
+    for i in range(rings):
+        q = math.pi / 2 * i / rings
+        for k in range(segments):
+            f = 2 * math.pi * k / segments
+            lines.append(f"v {stretch * math.cos(q) * math.cos(f)} {math.cos(q) * math.sin(f)} {math.sin(q)}")
+    lines.append("v 0 0 1")
+    for i in range(rings - 1):
+        for k in range(segments):
+            a, b = i * segments + k + 1, i * segments + (k + 1) % segments + 1
+            lines.append(f"f {a} {b} {b + segments} {a + segments}")
+    top = rings * segments + 1
+    last = (rings - 1) * segments
+    lines += [f"f {last + k + 1} {last + (k + 1) % segments + 1} {top}" for k in range(segments)]
+    return "\n".join(lines) + "\n"
+
+
+def test_a_mesh_of_revolution_is_taken_and_a_stretched_one_refused_with_its_figure(
+    program: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "dome.obj").write_text(dome(), encoding="utf-8")
+    out = design(MESH, tmp_path)
+    summary = read_json(out / "design.json")["summary"]
+    assert summary["rim_angle_deg"] == pytest.approx(90, abs=0.2)
+    (tmp_path / "dome.obj").write_text(dome(1.2), encoding="utf-8")
+    fails(tmp_path, MESH, 2, "target.file", "dome.obj", "% of the rim radius", "2 %")
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        ("", ["dome.obj"]),
+        ("v 0 0 0\nv 1 0 0\nv 0 1 0\n", ["triangle"]),
+        ("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", ["dome.obj"]),
+        ("v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", ["dome.obj"]),
+        ("not a mesh at all", ["dome.obj"]),
+    ],
+)
+def test_wrong_meshes(program: Path, tmp_path: Path, content: str, words: list[str]) -> None:
+    (tmp_path / "dome.obj").write_text(content, encoding="utf-8")
+    fails(tmp_path, MESH, 2, "target.file", *words)
+
+
+def test_a_huge_mesh_is_refused_before_it_is_read(program: Path, tmp_path: Path) -> None:
+    with (tmp_path / "dome.obj").open("wb") as file:
+        file.truncate(3 << 30)
+    fails(tmp_path, MESH, 2, "target.file", "dome.obj", "more than the limit")
+
+
+def test_a_mesh_of_unknown_format_is_refused(program: Path, tmp_path: Path) -> None:
+    (tmp_path / "dome.ply").write_text("ply", encoding="utf-8")
+    fails(tmp_path, MESH.replace("dome.obj", "dome.ply"), 2, "target.file", ".ply", ".stl")
 
 
 def test_a_straight_meridian_is_infeasible(program: Path, tmp_path: Path) -> None:

@@ -16,6 +16,7 @@ pub mod progress;
 pub mod report;
 pub mod results;
 pub mod solver;
+pub mod surface;
 pub mod target;
 pub mod voxel;
 
