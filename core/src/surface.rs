@@ -103,8 +103,8 @@ impl Design {
             };
             for j in 0..=across {
                 let share = j as f64 / across as f64 - 0.5;
-                // Seen along the spoke from rim to hub the normal is up, so a dome's edges run from +y to -y.
-                let y = if self.input().is_strip() { share * width } else { -share * width };
+                // A dome's spoke runs towards -x, a rectangular strip towards +x: quads shall turn the same way.
+                let y = if self.input().is_strip() { -share * width } else { share * width };
                 surface.positions.push([radial, y, z]);
                 surface.normals.push(normal);
                 surface.modulus_mpa.push(modulus);

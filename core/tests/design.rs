@@ -123,7 +123,7 @@ fn morphed_spokes_meet_edge_to_edge_and_face_outward() {
     let closed = design.spoke_surface(Strip::Graded, 1.0, 40, 4).unwrap();
     let next = closed.turned(1, 8);
     for i in 0..=40 {
-        let (left, right) = (closed.positions[i * 5], next.positions[i * 5 + 4]);
+        let (left, right) = (next.positions[i * 5], closed.positions[i * 5 + 4]);
         let gap = (0..3).map(|k| (left[k] - right[k]).powi(2)).sum::<f64>().sqrt();
         assert!(gap < 1e-6, "row {i}: {gap}");
     }
