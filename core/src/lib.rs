@@ -10,6 +10,7 @@ pub mod modulus_field;
 mod numerics;
 pub mod output;
 pub mod profile;
+pub mod report;
 pub mod target;
 pub mod voxel;
 
