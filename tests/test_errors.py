@@ -79,11 +79,11 @@ def test_missing_files_are_named(program: Path, tmp_path: Path) -> None:
     ("rows", "words"),
     [
         ("rho,z\n10,0\n9,x\n8,2\n7,3\n6,4\n5,5\n", ["meridian.csv", "line 3", "x"]),
-        ("rho,z\n10,0\n9,nan\n8,2\n7,3\n6,4\n5,5\n", ["meridian.csv", "line 3", "nan"]),
+        ("rho,z\n10,0\n9,nan\n8,2\n7,3\n6,4\n5,5\n", ["meridian.csv", "line 3", "NaN"]),
         ("rho,z\n10,0\n9,1,1\n8,2\n7,3\n6,4\n5,5\n", ["meridian.csv", "line 3"]),
-        ("rho,z\n10,0\n9,1\n", ["meridian.csv", "points"]),
+        ("rho,z\n10,0\n9,1\n", ["meridian.csv", "point(s)"]),
         ("", ["meridian.csv"]),
-        ("rho,z\n10,0\n9,1\n9.9,0.2\n7,3\n6,4\n5,5\n4,6\n2,7\n", ["meridian.csv", "line 4"]),
+        ("rho,z\n10,0\n9,1\n9.9,0.2\n7,3\n6,4\n5,5\n4,6\n2,7\n", ["meridian.csv", "doubles back at line"]),
         ("rho,z\n10,0\n5,0\n5,5\n8,5\n8,-3\n4,-3\n3,-3\n1,-3\n", ["meridian.csv", "cross"]),
     ],
 )

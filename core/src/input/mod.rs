@@ -16,7 +16,7 @@ pub mod reference;
 pub mod schema;
 pub mod target_file;
 
-pub use error::InputError;
+pub use error::{InputError, InputProblem};
 pub use model::{
     DeckKind, DeckSolver, DeckStyle, DecksInput, DesignInput, MaterialsInput, StripsInput, TargetInput, ThrustInput,
     VoxelsInput,
