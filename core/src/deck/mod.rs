@@ -126,12 +126,28 @@ pub fn write(
     sink.finish()
 }
 
+/// Undeformed nodes of the set `MIDLINE` of a deck of one spoke, `[x, y, z]` in mm, in the set's order; `x` is the arc
+/// length. They are level unless the deck has an imperfection.
+///
+/// # Errors
+/// [`DeckError::NotOffered`] for a deck that [`plan`] does not offer or that has no single mid-line.
+pub fn midline(design: &Design, kind: DeckKind, solver: DeckSolver) -> Result<Vec<[f64; 3]>, DeckError> {
+    let plan = DeckPlan { kind, solver, nodes: 0, elements: 0, bytes: 0 };
+    let refuse = |reason| DeckError::NotOffered { path: plan.relative_path(), reason };
+    let deck = prepare(design, kind, solver).map_err(refuse)?;
+    deck.midline().ok_or_else(|| refuse("it models all spokes"))
+}
+
 /// A kind of deck, prepared for one design.
 trait Deck {
     /// Number of nodes, reference nodes included.
     fn nodes(&self) -> u64;
     /// Number of elements.
     fn elements(&self) -> u64;
+    /// Nodes of the mid-line, where there is a single one.
+    fn midline(&self) -> Option<Vec<[f64; 3]>> {
+        None
+    }
     /// Writes it: the table of contents.
     fn write(&self, provenance: &Provenance, sink: &mut Sink<'_>) -> Result<(), DeckError>;
 }

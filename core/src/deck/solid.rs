@@ -2,6 +2,7 @@
 
 use super::DeckError;
 use super::keywords::constraints::{Reference, rigid_face};
+use super::keywords::materials::Law;
 use super::keywords::step::Increments;
 use super::keywords::{amplitudes, boundary, nodes, output, sets, step};
 use super::layout::Layout;
@@ -13,8 +14,11 @@ use crate::elastica::morph::Guide;
 use crate::input::model::{DeckSolver, DecksInput};
 use crate::mesh::Block;
 
-/// Rise of a strip that is to buckle, as a share of its thickness.
-const BOW: f64 = 0.05;
+/// Rise of a strip that is to buckle, as a share of its thickness: with a twentieth some runs buckled downward; the
+/// final shape hardly depends on it.
+const BOW: f64 = 0.1;
+/// Strain at the faces from which on the law must hold in large strains.
+const LARGE_STRAIN: f64 = 0.1;
 
 /// Name of the part and of its only instance.
 const PART: &str = "SPOKE";
@@ -26,6 +30,7 @@ pub(super) struct SolidModel<'a> {
     pub layout: Layout,
     pub block: Block,
     pub element: String,
+    pub law: Law,
     schedule: Schedule,
     coordinates: Coordinates,
     rim: Reference,
@@ -55,6 +60,7 @@ impl<'a> SolidModel<'a> {
             design,
             layout,
             element: element(&input.decks, layout, block.layers()),
+            law: law(design, layout),
             schedule: Schedule::of(design),
             coordinates: Coordinates::new(length.max(block.y(0, 0).abs())),
             rim: reference("RP-RIM", "RP-RIM-ROT", 0, 0.0),
@@ -91,6 +97,14 @@ impl<'a> SolidModel<'a> {
                  with a = {} mm.",
                 super::number::real(BOW * self.design.input().strips.thickness_mm)
             ));
+        }
+        if self.law == Law::NeoHooke {
+            text.push(
+                "Material: compressible neo-Hookean with the moduli and Poisson's ratios of small strains. In large \
+                 displacements CalculiX's *ELASTIC softens in compression and collapses at 42 %; this strip is bent by \
+                 more than a tenth."
+                    .to_owned(),
+            );
         }
         text
     }
@@ -153,13 +167,23 @@ impl<'a> SolidModel<'a> {
         self.layout.prefix(INSTANCE)
     }
 
+    /// Increments; a strip that is to buckle passes its buckling load, where `(pi^2/3) (t/L)^2` of its length is gone, in
+    /// small ones.
+    fn increments(&self) -> Increments {
+        let Some(Guide::Clamped { length_mm, shortening }) = self.design.guide() else { return Increments::MORPH };
+        let slenderness = self.design.input().strips.thickness_mm / length_mm;
+        let buckled = slenderness * std::f64::consts::PI / (3.0 * shortening).sqrt();
+        let first = (0.1 * buckled).clamp(1e-3, Increments::MORPH.first);
+        Increments { first, ..Increments::MORPH }
+    }
+
     pub(super) fn amplitudes(&self, sink: &mut Sink<'_>) -> Result<(), DeckError> {
         amplitudes::amplitudes(sink, self.schedule.motions())
     }
 
     /// The step from the flat strip to its final shape.
     pub(super) fn step(&self, sink: &mut Sink<'_>) -> Result<(), DeckError> {
-        step::open(sink, self.layout, "MORPH", Increments::MORPH)?;
+        step::open(sink, self.layout, "MORPH", self.increments())?;
         boundary::ends(sink, self.layout, &self.schedule, [&self.rim, &self.hub])?;
         output::requests(sink, self.layout, self.nodes(), &["MIDLINE"], &[&self.rim, &self.hub])?;
         step::close(sink)
@@ -174,4 +198,13 @@ fn element(decks: &DecksInput, layout: Layout, layers: usize) -> String {
     } else {
         decks.solid_element.clone()
     }
+}
+
+/// The law of the phases: linear unless CalculiX would have to go beyond [`LARGE_STRAIN`].
+fn law(design: &Design, layout: Layout) -> Law {
+    let profile = design.profile();
+    let turn = |s: &[f64], theta: &[f64]| ((theta[1] - theta[0]) / (s[1] - s[0])).abs();
+    let curvature = profile.s.windows(2).zip(profile.inclination.windows(2)).map(|(s, theta)| turn(s, theta));
+    let strain = 0.5 * design.input().strips.thickness_mm * curvature.fold(0.0, f64::max);
+    if strain > LARGE_STRAIN && !layout.is_abaqus() { Law::NeoHooke } else { Law::Linear }
 }

@@ -182,6 +182,12 @@ impl Block {
         self.thickness * (level as f64 / self.layers as f64 - 0.5) + rise
     }
 
+    /// Nodes of the mid-line, mm, rim to hub.
+    #[must_use]
+    pub fn midline(&self) -> Vec<[f64; 3]> {
+        (0..self.planes()).map(|p| [self.x(p), 0.0, self.z(p, self.layers / 2)]).collect()
+    }
+
     /// Whether all planes have the same spacing across, so that coordinates depend on the distance from the middle only.
     #[must_use]
     pub fn spacing(&self) -> &Spacing {
