@@ -49,11 +49,12 @@ impl<'a> SolidModel<'a> {
         };
         // In an assembly, reference nodes are numbered on their own.
         let first = if layout.has_parts() { 1 } else { block.nodes() + 1 };
+        let step = if layout.is_abaqus() { 1_u64 } else { 2 };
         let reference = |name, rotation_name, i, x| Reference {
             name,
             rotation_name,
-            node: first + i,
-            rotation_node: first + 2 + i,
+            node: first + step * i,
+            rotation_node: first + step * i + 1,
             position: [x, 0.0, 0.0],
         };
         Self {
@@ -122,16 +123,23 @@ impl<'a> SolidModel<'a> {
         if parts {
             sink.line(&format!("*PART, NAME={PART}"))?;
         }
+        let references = [self.rim.nodes(self.layout), self.hub.nodes(self.layout)].concat();
         nodes::nodes(sink, &self.block, self.coordinates)?;
+        if !parts {
+            nodes::more_nodes(sink, &references)?;
+        }
         elements(sink)?;
         if parts {
             sink.line("*END PART")?;
             sink.line("*ASSEMBLY, NAME=ASSEMBLY")?;
             sink.line(&format!("*INSTANCE, NAME={INSTANCE}, PART={PART}"))?;
             sink.line("*END INSTANCE")?;
+            nodes::reference_nodes(sink, &references)?;
+        } else {
+            for (name, node, _) in references {
+                sets::node_list(sink, name, "", std::iter::once(node))?;
+            }
         }
-        nodes::reference_nodes(sink, &self.rim.nodes(self.layout))?;
-        nodes::reference_nodes(sink, &self.hub.nodes(self.layout))?;
         let instance = self.layout.instance(INSTANCE);
         let block = &self.block;
         let planes = block.planes();
