@@ -225,7 +225,7 @@ fn check_mesh(design: &Design, plan: &DeckPlan, per_edge: usize) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 32, failure_persistence: None, ..ProptestConfig::default() })]
     #[test]
     fn meshes_are_sound(
         count in 3_usize..13,

@@ -1,10 +1,9 @@
 //! Finite-element decks for ABAQUS and CalculiX.
 //!
-//! A deck is a table of contents over one writer a keyword group ([`keywords`]): heading, nodes, elements, sets, sections,
-//! materials, amplitudes, initial conditions, constraints, step, boundary conditions, output. It is streamed through a
-//! [`sink`], which renders long blocks in parallel and holds only a few megabytes of them; the same pass over a counting
-//! sink estimates its size. ABAQUS decks come as parts, instances and an assembly or flat, CalculiX decks flat
-//! ([`layout`]).
+//! A deck is a table of contents over one writer a keyword group (`keywords/`): heading, nodes, elements, sets, sections,
+//! materials, amplitudes, initial conditions, constraints, step, boundary conditions, output. It is streamed through a sink
+//! that renders long blocks in parallel and holds only a few megabytes of them; the same pass over a counting sink estimates
+//! its size. ABAQUS decks come as parts, instances and an assembly or flat, CalculiX decks flat.
 //!
 //! Units are mm, N, MPa, tonne, s, K. One strip lies along x, its rim at `x = 0`, its mid-plane at `z = 0`.
 

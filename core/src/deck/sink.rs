@@ -172,3 +172,72 @@ fn estimate(block: &dyn Rows) -> u64 {
     }
     bytes.ceil() as u64
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Row `i` is the number `i`, repeated.
+    struct Numbers;
+
+    impl Rows for Numbers {
+        fn rows(&self) -> usize {
+            20_000
+        }
+        fn group(&self) -> usize {
+            10
+        }
+        fn weight(&self, row: usize) -> usize {
+            row % 7
+        }
+        fn render(&self, rows: Range<usize>, out: &mut Vec<u8>) {
+            for row in rows {
+                (0..self.weight(row)).for_each(|_| out.extend_from_slice(format!("{row}\n").as_bytes()));
+            }
+        }
+    }
+
+    #[test]
+    fn pieces_arrive_in_order_and_their_size_is_foreseen() {
+        let mut expected = b"before\n".to_vec();
+        Numbers.render(0..Numbers.rows(), &mut expected);
+        expected.extend_from_slice(b"after\n");
+        let fill = |sink: &mut Sink<'_>| {
+            sink.line("before").unwrap();
+            sink.rows(&Numbers).unwrap();
+            sink.line("after").unwrap();
+        };
+        let mut out = Vec::new();
+        let mut sink = Sink::new(&mut out, &crate::progress::ignore);
+        fill(&mut sink);
+        assert_eq!(sink.written(), expected.len() as u64);
+        sink.finish().unwrap();
+        assert!(out == expected);
+        let mut counter = Sink::counting();
+        fill(&mut counter);
+        assert!((counter.written() as f64 / expected.len() as f64 - 1.0).abs() < 0.02);
+    }
+
+    #[test]
+    fn it_works_on_the_only_thread_of_a_pool() {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+        let out = pool.install(|| {
+            let mut out = Vec::new();
+            let mut sink = Sink::new(&mut out, &crate::progress::ignore);
+            sink.rows(&Numbers).unwrap();
+            sink.finish().unwrap();
+            out
+        });
+        assert!(out.ends_with(b"19998\n"));
+    }
+
+    #[test]
+    fn lists_have_sixteen_numbers_a_line() {
+        let mut out = Vec::new();
+        let mut sink = Sink::new(&mut out, &crate::progress::ignore);
+        sink.list(1..=33).unwrap();
+        sink.finish().unwrap();
+        let text = String::from_utf8(out).unwrap();
+        assert_eq!(text.lines().map(|l| l.split(',').count()).collect::<Vec<_>>(), [16, 16, 1]);
+    }
+}
