@@ -12,6 +12,8 @@ const FLUSH: usize = 1 << 20;
 const PIECE: usize = 8192;
 /// Groups of rows that are rendered to estimate a block's size.
 const SAMPLES: usize = 24;
+/// Rows of a group that are rendered at least, where it has so many.
+const SAMPLED_ROWS: usize = 64;
 
 enum Target<'a> {
     Writer { out: &'a mut dyn Write, progress: Progress<'a> },
@@ -152,11 +154,11 @@ fn pieces(block: &dyn Rows) -> impl Iterator<Item = Range<usize>> {
     })
 }
 
-/// Size of a block, bytes, from the middle group of evenly spread strata; exact for short blocks.
+/// Size of a block, bytes, from rows of the middle group of evenly spread strata.
 fn estimate(block: &dyn Rows) -> u64 {
     let group = block.group().max(1);
     let groups = block.rows() / group;
-    let weight = |rows: Range<usize>| rows.map(|r| block.weight(r)).sum::<usize>() as f64;
+    let stride = (group / SAMPLED_ROWS).max(1);
     let mut out = Vec::new();
     let mut bytes = 0.0;
     for stratum in 0..SAMPLES {
@@ -165,10 +167,15 @@ fn estimate(block: &dyn Rows) -> u64 {
             continue;
         }
         let middle = usize::midpoint(from, to);
-        let sample = middle * group..(middle + 1) * group;
-        out.clear();
-        block.render(sample.clone(), &mut out);
-        bytes += out.len() as f64 * weight(from * group..to * group) / weight(sample).max(1.0);
+        let (mut sampled, mut weight) = (0, 0);
+        for row in (middle * group..(middle + 1) * group).step_by(stride) {
+            out.clear();
+            block.render(row..row + 1, &mut out);
+            sampled += out.len();
+            weight += block.weight(row);
+        }
+        let all: usize = (from * group..to * group).map(|r| block.weight(r)).sum();
+        bytes += sampled as f64 * all as f64 / weight.max(1) as f64;
     }
     bytes.ceil() as u64
 }
