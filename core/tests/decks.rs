@@ -106,12 +106,11 @@ fn flat_and_parts_describe_the_same_mesh() {
             let plan = deck::plan(&design).into_iter().find(|p| p.kind == kind && p.solver == DeckSolver::Abaqus);
             written(&design, &plan.unwrap())
         };
-        let part = |text: &str| {
-            let from = text.find("*NODE\n").unwrap();
-            let to = text.find("*SOLID SECTION").unwrap();
-            text[from..to].to_owned()
-        };
-        assert_eq!(part(&text("style = \"flat\"")), part(&text("style = \"parts\"")));
+        let (flat, parts) = (text("style = \"flat\""), text("style = \"parts\""));
+        let part = |text: &str, from: &str, to: &str| text[text.find(from).unwrap()..text.find(to).unwrap()].to_owned();
+        // Only the reference nodes are elsewhere.
+        assert!(part(&flat, "*NODE\n", "*ELEMENT").starts_with(&part(&parts, "*NODE\n", "*ELEMENT")));
+        assert!(part(&flat, "*ELEMENT", "*SOLID SECTION") == part(&parts, "*ELEMENT", "*SOLID SECTION"));
     }
 }
 
@@ -226,7 +225,7 @@ fn check_mesh(design: &Design, plan: &DeckPlan, per_edge: usize) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 32, failure_persistence: None, ..ProptestConfig::default() })]
     #[test]
     fn meshes_are_sound(
         count in 3_usize..13,

@@ -1,15 +1,16 @@
 //! Decks run by the real CalculiX. Without `ccx` on the path (or named by `VOXELASTICA_CCX`) each test says that it was
 //! skipped.
 
-use std::path::Path;
+#[allow(dead_code, reason = "shared between test programs")]
+mod common;
+
 use std::process::Command;
 
-use voxelastica_core::deck;
-use voxelastica_core::input::files::Format;
+use common::{design, provenance};
 use voxelastica_core::input::{DeckKind, DeckSolver};
-use voxelastica_core::output::{Provenance, Summary};
+use voxelastica_core::output::Summary;
 use voxelastica_core::results::ccx_dat::{NodePrint, Quantity, parse};
-use voxelastica_core::{Design, DesignInput, Limits, progress};
+use voxelastica_core::{Design, deck, progress};
 
 /// A hemisphere of eight spokes: `hub` and the graded mesh are filled in.
 fn hemisphere(length: f64, hub: &str, voxel: f64) -> Design {
@@ -37,13 +38,9 @@ fn hemisphere(length: f64, hub: &str, voxel: f64) -> Design {
     design(&text)
 }
 
-fn design(text: &str) -> Design {
-    let input = DesignInput::from_text(text, Format::Toml, "test.toml", "test", Path::new(".")).unwrap();
-    Design::compute(&input, Limits::default()).unwrap()
-}
-
-/// The last increment of a run.
+/// What a run wrote.
 struct Run {
+    flat: Vec<[f64; 3]>,
     blocks: Vec<NodePrint>,
 }
 
@@ -56,15 +53,11 @@ impl Run {
     }
 
     /// Mid-line nodes as `[s, x, z]` with the rim at the origin.
-    fn midline(&self, length: f64) -> Vec<[f64; 3]> {
+    fn midline(&self) -> Vec<[f64; 3]> {
         let moved = self.last("MIDLINE", Quantity::Displacement);
-        let step = length / (moved.len() - 1) as f64;
+        assert_eq!(moved.len(), self.flat.len());
         let rim = moved[0];
-        let place = |(i, u): (usize, &[f64; 3])| {
-            let s = i as f64 * step;
-            [s, s + u[0] - rim[0], u[2] - rim[2]]
-        };
-        moved.iter().enumerate().map(place).collect()
+        self.flat.iter().zip(&moved).map(|([s, _, z], u)| [*s, s + u[0] - rim[0], z + u[2] - rim[2]]).collect()
     }
 
     /// Largest distance of the mid-line from the target, as a share of the length: at equal arc length, and to the curve.
@@ -72,17 +65,27 @@ impl Run {
         let profile = design.profile();
         let length = design.input().strips.length_mm;
         let last = profile.s.len() - 1;
+        let point = |i: usize| [profile.x[i], profile.z[i]];
         let mut errors = [0.0_f64; 2];
-        for [s, x, z] in self.midline(length) {
+        for [s, x, z] in self.midline() {
             let at = (s / length * last as f64).clamp(0.0, last as f64);
             let i = (at as usize).min(last - 1);
-            let between = |v: &[f64]| v[i] + (at - i as f64) * (v[i + 1] - v[i]);
-            errors[0] = errors[0].max((x - between(&profile.x)).hypot(z - between(&profile.z)));
-            let nearest = profile.x.iter().zip(&profile.z).map(|(a, b)| (x - a).hypot(z - b)).fold(f64::MAX, f64::min);
+            let [a, b] = [point(i), point(i + 1)];
+            let share = at - i as f64;
+            let same = [a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])];
+            errors[0] = errors[0].max((x - same[0]).hypot(z - same[1]));
+            let nearest = (0..last).map(|i| to_segment([x, z], point(i), point(i + 1))).fold(f64::MAX, f64::min);
             errors[1] = errors[1].max(nearest);
         }
         errors.map(|e| e / length)
     }
+}
+
+/// Distance of a point from a segment.
+fn to_segment(p: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
+    let (d, e) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
+    let along = ((d[0] * e[0] + d[1] * e[1]) / (d[0] * d[0] + d[1] * d[1])).clamp(0.0, 1.0);
+    (e[0] - along * d[0]).hypot(e[1] - along * d[1])
 }
 
 /// Runs a deck; `None` where there is no solver.
@@ -95,15 +98,16 @@ fn run(design: &Design, kind: DeckKind) -> Option<Run> {
     let plan = deck::plan(design).into_iter().find(|p| p.kind == kind && p.solver == DeckSolver::Calculix).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let mut out = std::fs::File::create(folder.path().join("deck.inp")).unwrap();
-    deck::write(design, &plan, &Provenance::of(design.input()), &mut out, &progress::ignore).unwrap();
+    deck::write(design, &plan, &provenance(), &mut out, &progress::ignore).unwrap();
     let start = std::time::Instant::now();
     let output =
         Command::new(&ccx).arg("deck").current_dir(folder.path()).env("OMP_NUM_THREADS", "2").output().unwrap();
-    println!("{} elements: {:.1} s", plan.elements, start.elapsed().as_secs_f64());
     let log = String::from_utf8_lossy(&output.stdout);
+    let iterations = log.matches("iteration ").count();
+    println!("{} elements: {iterations} iterations, {:.1} s", plan.elements, start.elapsed().as_secs_f64());
     assert!(log.contains("Job finished") && !log.contains("*ERROR"), "{log}");
     let text = std::fs::read_to_string(folder.path().join("deck.dat")).unwrap();
-    Some(Run { blocks: parse(&text).unwrap() })
+    Some(Run { flat: deck::midline(design, kind, DeckSolver::Calculix).unwrap(), blocks: parse(&text).unwrap() })
 }
 
 /// A reaction lies between those of a narrow and a wide strip, give or take the mesh and the short spoke.
@@ -137,4 +141,49 @@ fn the_voxelised_hemisphere_stays_near_its_target() {
     let [material, nearest] = run.errors(&design);
     println!("voxel hemisphere: {:.3} % at equal s, {:.3} % to the curve", 100.0 * material, 100.0 * nearest);
     assert!(material < 0.015, "{material}");
+}
+
+/// The table of all shapes, for the developer: `--ignored --nocapture`, ten minutes.
+#[test]
+#[ignore = "long"]
+fn every_shape_of_the_paper() {
+    let polynomial = |coefficients: &str, count, hub, support: &str, phases: [&str; 2], mesh: &str| {
+        format!(
+            "[target]\nkind = \"inclination-polynomial\"\ncoefficients_deg = [{coefficients}]\n[strips]\ncount = {count}\n\
+             length_mm = 100.0\nhub_radius_mm = {hub}\nthickness_mm = 2.0\n[thrust]\nhub = \"{support}\"\n[materials]\n\
+             phases = {phases:?}\n[voxels]\nsize_mm = 1.0\n[decks]\ncalculix_graded_elements = {mesh}"
+        )
+    };
+    let strip = |ratio: f64| {
+        format!(
+            "[target]\nkind = \"strip\"\nwidth_mm = 12.0\nmodulus_ratio = {ratio:?}\nshortening = 0.6\n[strips]\n\
+             length_mm = 40.0\nthickness_mm = 2.0\n[materials]\nphases = [\"FLX9070\", \"FLX9095\"]\n[voxels]\nsize_mm = 1.0"
+        )
+    };
+    let (nose, trumpet, roof, hemisphere) = (
+        "26.52, -116.3, 162.3, -132, 63.5, -47.14, 18.64, 41.56",
+        "-11340, 49160, -86720, 79040, -38440, 8860, -564.5, 87.1, 6.467",
+        "6395, -28300, 52140, -51860, 30530, -11170, 2808, -570.8, 89.7",
+        "-90, 90",
+    );
+    let (near, far) = (["FLX9070", "FLX9095"], ["TangoBlack", "VeroClear"]);
+    let cases = [
+        ("hemisphere, held", polynomial(hemisphere, 8, 10.0, "held", near, "[60, 6, 2]"), 0.0015),
+        ("nose cone, held", polynomial(nose, 12, 5.0, "held", near, "[80, 4, 2]"), 0.004),
+        ("trumpet, held", polynomial(trumpet, 8, 5.0, "held", near, "[80, 4, 2]"), 0.002),
+        ("roof, held", polynomial(roof, 6, 20.0, "held", far, "[80, 4, 2]"), 0.004),
+        ("nose cone, free", polynomial(nose, 12, 5.0, "free", far, "[80, 4, 2]"), 0.001),
+        ("trumpet, free", polynomial(trumpet, 8, 5.0, "free", far, "[80, 4, 2]"), 0.002),
+        ("roof, free", polynomial(roof, 6, 20.0, "free", far, "[80, 4, 2]"), 0.005),
+        ("strip, 0.5", strip(0.5), 0.03),
+        ("strip, 1", strip(1.0), 0.03),
+        ("strip, 2", strip(2.0), 0.03),
+    ];
+    for (name, text, limit) in cases {
+        let design = design(&text);
+        let Some(run) = run(&design, DeckKind::GradedSolid) else { return };
+        let [material, nearest] = run.errors(&design);
+        println!("{name}: {:.3} % at equal s, {:.3} % to the curve", 100.0 * material, 100.0 * nearest);
+        assert!(material < limit, "{name}: {material}");
+    }
 }
