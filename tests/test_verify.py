@@ -142,6 +142,11 @@ def test_decks_of_another_design_are_not_verified(program: Path, tmp_path: Path)
     assert run("verify", tmp_path / "nowhere").code == 2
 
 
+def test_a_coupon_has_no_shape_to_verify(program: Path, examples: dict[str, Path]) -> None:
+    result = run("verify", examples["coupon_1"])
+    assert result.code == 2 and "no shape" in result.err
+
+
 def test_a_missed_target_error_has_its_own_exit_code(ccx: str, tmp_path: Path) -> None:
     folder = small(tmp_path)
     result = run("verify", folder, "--target-error", "0.0001")

@@ -81,6 +81,11 @@ pub fn verify(
     progress: &dyn Fn(Status) -> bool,
 ) -> Result<Verification, Error> {
     let provenance = Provenance::of(design.input());
+    if design.guide().is_none() {
+        let error =
+            crate::InputError::new("target.shortening", "", "a strip that is only stretched takes no shape to verify");
+        return Err(Error::Input(error.in_file(&folder.join("design.json").display().to_string())));
+    }
     let deck = folder.join(model.deck());
     check_deck(&deck, &provenance)?;
     let run = ccx.run(&deck, work, progress)?;
