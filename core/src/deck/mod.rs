@@ -1,20 +1,24 @@
 //! Finite-element decks for ABAQUS and CalculiX.
 //!
-//! A deck is a table of contents over one writer a keyword group ([`keywords`]): heading, nodes, elements, sets, sections,
+//! A deck is a table of contents over one writer a keyword group (`keywords`): heading, nodes, elements, sets, sections,
 //! materials, amplitudes, initial conditions, constraints, step, boundary conditions, output. It is streamed through a
-//! [`sink`], which renders long blocks in parallel and holds only a few megabytes of them; the same pass over a counting
+//! `sink`, which renders long blocks in parallel and holds only a few megabytes of them; the same pass over a counting
 //! sink estimates its size. ABAQUS decks come as parts, instances and an assembly or flat, CalculiX decks flat
-//! ([`layout`]).
+//! (`layout`).
 //!
-//! Units are mm, N, MPa, tonne, s, K. One strip lies along x, its rim at `x = 0`, its mid-plane at `z = 0`.
+//! Units are mm, N, MPa, tonne, s, K. Solids are one strip along x, its rim at `x = 0`, its mid-plane at `z = 0`; shells are
+//! the whole flower, hub at the origin, spoke 1 along +x, z up.
 
+mod graded_shell;
 mod graded_solid;
 mod keywords;
 mod layout;
 mod number;
 mod schedule;
+mod shell;
 mod sink;
 mod solid;
+mod voxel_shell;
 mod voxel_solid;
 
 use std::io::{self, Write};
@@ -143,6 +147,7 @@ fn prepare<'a>(design: &'a Design, kind: DeckKind, solver: DeckSolver) -> Result
         (DeckKind::VoxelSolid, _) => Ok(Box::new(voxel_solid::VoxelSolid::new(design, solver))),
         (_, DeckSolver::Calculix) => Err("its shells diverge in large rotations"),
         (_, _) if design.input().is_strip() => Err("a rectangular strip is no flower"),
-        (DeckKind::GradedShell | DeckKind::VoxelShell, DeckSolver::Abaqus) => Err("not written yet"),
+        (DeckKind::GradedShell, DeckSolver::Abaqus) => Ok(Box::new(graded_shell::GradedShell::new(design))),
+        (DeckKind::VoxelShell, DeckSolver::Abaqus) => Ok(Box::new(voxel_shell::VoxelShell::new(design))),
     }
 }
