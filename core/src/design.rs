@@ -37,7 +37,6 @@ enum Body {
 }
 
 /// A finished design, computed in memory; nothing is read or written.
-#[derive(Debug)]
 pub struct Design {
     input: DesignInput,
     phases: PhaseSet,
@@ -266,7 +265,7 @@ impl Design {
             };
             let (width, ratio) = match (&self.body, self.inverse()) {
                 (Body::Dome { .. }, Some(solution)) => {
-                    (self.body.local_width(&self.input, s, x), solution.modulus_ratio[i])
+                    (self.body.local_width(&self.input, x), solution.modulus_ratio[i])
                 }
                 _ => self.body.local(&self.input, s),
             };
@@ -326,8 +325,8 @@ impl Design {
         let layers = self.grid.layers();
         if layers % 2 == 1 && self.input.decks.calculix_elements_per_voxel_edge % 2 == 1 {
             self.warnings.push(format!(
-                "{layers} layers have no nodes on the mid-plane: the voxel_solid deck for CalculiX uses twice as many \
-                 elements along a voxel's edge"
+                "an odd number of layers ({layers}) has no nodes on the mid-plane: the voxel_solid deck for CalculiX uses \
+                 twice as many elements along a voxel's edge"
             ));
         }
         if let Some(residual) = self.target.as_ref().and_then(|t| t.fit.as_ref()).map(|f| f.residual_max_mm)
@@ -339,6 +338,15 @@ impl Design {
     }
 }
 
+impl std::fmt::Debug for Design {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Design")
+            .field("name", &self.input.name)
+            .field("contrast", &self.contrast)
+            .finish_non_exhaustive()
+    }
+}
+
 impl Body {
     fn contrast(&self) -> f64 {
         match self {
@@ -347,7 +355,7 @@ impl Body {
         }
     }
 
-    fn local_width(&self, input: &DesignInput, _s: f64, x: f64) -> f64 {
+    fn local_width(&self, input: &DesignInput, x: f64) -> f64 {
         match self {
             Self::Dome { hub_x, .. } => tessellation::width(input.count(), input.hub_radius() + hub_x - x),
             Self::Strip { width_mm, .. } => *width_mm,
@@ -359,7 +367,7 @@ impl Body {
         match self {
             Self::Dome { curve, solution, .. } => {
                 let point = curve.at(s);
-                let width = self.local_width(input, s, point.x);
+                let width = self.local_width(input, point.x);
                 (width, solution.ratio_at(&point, width, curve.length()))
             }
             Self::Strip { width_mm, middle_ratio } => {
@@ -428,16 +436,13 @@ fn check_reach(input: &DesignInput, phases: &PhaseSet, body: &Body, target: Opti
                 .and_then(|w| inverse::solve(target.curve.as_ref(), &target.stations, &w, other.0, other.1));
             if let Ok(found) = found.as_ref().map(|s| s.contrast)
                 && other != now
-                && found < contrast * 0.999
+                && found <= reach
             {
-                helps.push(format!("{words} needs {found:.3}"));
+                helps.push(format!("{words} needs only {found:.3}"));
             }
         }
     }
-    helps.push(format!("so would phases whose moduli differ by a factor of {contrast:.2} or more"));
-    if helps.len() == 1 {
-        helps = vec![format!("use phases whose moduli differ by a factor of {contrast:.2} or more")];
-    }
+    helps.push(format!("use phases whose moduli differ by a factor of {contrast:.2} or more"));
     let names: Vec<String> = phases.phases().iter().map(|p| format!("{} ({} MPa)", p.name, p.modulus_mpa)).collect();
     Err(Error::infeasible(
         &input.name,
@@ -447,7 +452,7 @@ fn check_reach(input: &DesignInput, phases: &PhaseSet, body: &Body, target: Opti
             softest_mm,
             stiffest_mm,
             phases: names.join(" and "),
-            help: helps.join(", "),
+            help: helps.join(", or "),
         },
     ))
 }
@@ -538,7 +543,6 @@ fn designed_forces(body: &Body, scale_mpa: f64, thickness_mm: f64) -> EndForces 
     }
 }
 
-/// Mid-line distance helpers.
 impl Profile {
     /// Largest distance between a shape and the profile at equal arc lengths, mm.
     #[must_use]

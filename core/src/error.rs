@@ -15,9 +15,9 @@ pub enum Error {
     #[error(transparent)]
     Input(#[from] InputError),
     /// Mechanics or the materials rule the design out.
-    #[error("{name}: this design is infeasible: {reason}")]
+    #[error("{name}: {}: this design is infeasible: {reason}", .reason.key())]
     Infeasible {
-        /// Name of the design.
+        /// The design file, or the design's name where there is none.
         name: String,
         /// Why, where, and what would help.
         reason: Infeasible,
@@ -75,7 +75,32 @@ pub enum Infeasible {
     },
 }
 
+impl Infeasible {
+    /// The key of the design file that decides.
+    #[must_use]
+    pub fn key(&self) -> &'static str {
+        match self {
+            Self::Elastica(ElasticaError::NoWidth { .. }) => "strips.hub_radius_mm",
+            Self::Elastica(ElasticaError::EqualEndsUndetermined { .. } | ElasticaError::EqualEndsHeld) => {
+                "thrust.choice"
+            }
+            Self::Elastica(_) => "target",
+            Self::Contrast { .. } => "materials.phases",
+        }
+    }
+}
+
 impl Error {
+    /// Names the file that the design was read from, where the error does not name one yet.
+    #[must_use]
+    pub fn in_file(self, file: &str) -> Self {
+        match self {
+            Self::Input(error) => Self::Input(error.in_file(file)),
+            Self::Infeasible { reason, .. } => Self::Infeasible { name: file.to_owned(), reason },
+            other => other,
+        }
+    }
+
     /// Exit code of the command line: 1 internal, 2 input, 3 infeasible, 4 solver, 5 output, 130 cancelled.
     #[must_use]
     pub fn exit_code(&self) -> u8 {

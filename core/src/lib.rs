@@ -13,6 +13,10 @@ mod numerics;
 pub mod output;
 pub mod profile;
 pub mod progress;
+pub mod report;
+pub mod results;
+pub mod solver;
+pub mod surface;
 pub mod target;
 pub mod voxel;
 

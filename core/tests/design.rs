@@ -113,3 +113,34 @@ fn clamped_strips_and_coupons_are_designs_too() {
     let counts = coupon.grid().counts(2);
     assert_eq!(counts[0], counts[1]);
 }
+
+#[test]
+fn morphed_spokes_meet_edge_to_edge_and_face_outward() {
+    use voxelastica_core::surface::Strip;
+    let design = Design::compute(&read(HEMISPHERE), Limits::default()).unwrap();
+    let flat = design.spoke_surface(Strip::Graded, 0.0, 40, 4).unwrap();
+    assert!((flat.positions[0][0] - 110.0).abs() < 1e-9 && flat.positions.iter().all(|p| p[2].abs() < 1e-9));
+    let closed = design.spoke_surface(Strip::Graded, 1.0, 40, 4).unwrap();
+    let next = closed.turned(1, 8);
+    for i in 0..=40 {
+        let (left, right) = (next.positions[i * 5], closed.positions[i * 5 + 4]);
+        let gap = (0..3).map(|k| (left[k] - right[k]).powi(2)).sum::<f64>().sqrt();
+        assert!(gap < 1e-6, "row {i}: {gap}");
+    }
+    for surface in [&flat, &closed] {
+        for quad in surface.quads() {
+            let p = quad.map(|v| surface.positions[v as usize]);
+            let a = [0, 1, 2].map(|k| p[2][k] - p[0][k]);
+            let b = [0, 1, 2].map(|k| p[3][k] - p[1][k]);
+            let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+            let n = surface.normals[quad[0] as usize];
+            assert!(cross[0] * n[0] + cross[1] * n[1] + cross[2] * n[2] > 0.0, "quads turn with their normals");
+        }
+    }
+    // Outward: away from the centre of the sphere.
+    let radius = 200.0 / std::f64::consts::PI;
+    for (p, n) in closed.positions.iter().zip(&closed.normals) {
+        let outward = [p[0] - 10.0, 0.0, p[2]].map(|c| c / radius);
+        assert!((n[0] - outward[0]).abs() < 1e-3 && (n[2] - outward[2]).abs() < 1e-3);
+    }
+}

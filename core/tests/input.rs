@@ -32,7 +32,7 @@ fn error(from: &str, to: &str) -> String {
     let text = GOOD.replacen(from, to, 1);
     match parse(&text) {
         Err(error) => error.to_string(),
-        Ok(input) => Design::compute(&input, Limits::default()).err().expect("this must be refused").to_string(),
+        Ok(input) => Design::compute(&input, Limits::default()).expect_err("this must be refused").to_string(),
     }
 }
 

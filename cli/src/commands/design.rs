@@ -11,10 +11,8 @@ use crate::console::Console;
 /// Reads, computes and writes a design.
 pub fn run(options: &DesignOptions, console: &Console) -> Result<u8, Error> {
     let input = DesignInput::read(&options.file)?;
-    let design = Design::compute(&input, Limits { allow_large: options.yes }).map_err(|error| match error {
-        Error::Input(error) => Error::Input(error.in_file(&options.file.display().to_string())),
-        other => other,
-    })?;
+    let design = Design::compute(&input, Limits { allow_large: options.yes })
+        .map_err(|error| error.in_file(&options.file.display().to_string()))?;
     let folder = options.output.clone().unwrap_or_else(|| PathBuf::from("out").join(&input.name));
     let bar = console.bar(estimated_bytes(&design), "{msg} [{wide_bar}] {bytes}/{total_bytes} {eta}", "writing");
     let progress = |bytes: u64| {

@@ -6,7 +6,7 @@ use voxelastica_core::output::folder::Staging;
 use voxelastica_core::output::json;
 use voxelastica_core::report::{VerificationPicture, verification_svg};
 use voxelastica_core::results::verification::Model;
-use voxelastica_core::results::{Verification, verify};
+use voxelastica_core::results::{Verification, compare, verify};
 use voxelastica_core::solver::ccx::{Ccx, Status};
 use voxelastica_core::{Design, DesignInput, Error, InputError, Limits};
 
@@ -102,6 +102,10 @@ fn write(design: &Design, folder: &Path, verification: &Verification) -> Result<
         max_error_percent: verification.max_error_percent,
         rms_error_percent: verification.rms_error_percent,
         length_mm: design.input().strips.length_mm,
+        error_along: compare(profile, &verification.midline_mm).map(|c| {
+            let length = design.input().strips.length_mm;
+            verification.midline_mm.iter().zip(&c.distances_mm).map(|(p, d)| [p[0], 100.0 * d / length]).collect()
+        }),
     };
     let text = json::to_text(verification).map_err(|e| Error::Internal(format!("verification.json: {e}")))?;
     let mut staging = Staging::new(folder)?;

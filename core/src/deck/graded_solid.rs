@@ -58,6 +58,10 @@ impl Deck for GradedSolid<'_> {
         self.model.block.elements()
     }
 
+    fn midline(&self) -> Option<Vec<[f64; 3]>> {
+        Some(self.model.block.midline())
+    }
+
     fn write(&self, provenance: &Provenance, sink: &mut Sink<'_>) -> Result<(), DeckError> {
         let model = &self.model;
         let phases = model.design.phases();
@@ -82,7 +86,7 @@ impl Deck for GradedSolid<'_> {
             model.section(sink, "SPOKE", "GRADED")
         })?;
         model.section_controls(sink)?;
-        materials::graded(sink, "GRADED", phases, model.layout)?;
+        materials::graded(sink, "GRADED", phases, model.law, model.layout)?;
         model.amplitudes(sink)?;
         initial::modulus_field(sink, model.layout, &model.prefix(), &model.block, &self.moduli)?;
         model.step(sink)

@@ -1,10 +1,9 @@
 //! Finite-element decks for ABAQUS and CalculiX.
 //!
-//! A deck is a table of contents over one writer a keyword group (`keywords`): heading, nodes, elements, sets, sections,
-//! materials, amplitudes, initial conditions, constraints, step, boundary conditions, output. It is streamed through a
-//! `sink`, which renders long blocks in parallel and holds only a few megabytes of them; the same pass over a counting
-//! sink estimates its size. ABAQUS decks come as parts, instances and an assembly or flat, CalculiX decks flat
-//! (`layout`).
+//! A deck is a table of contents over one writer a keyword group (`keywords/`): heading, nodes, elements, sets, sections,
+//! materials, amplitudes, initial conditions, constraints, step, boundary conditions, output. It is streamed through a sink
+//! that renders long blocks in parallel and holds only a few megabytes of them; the same pass over a counting sink estimates
+//! its size. ABAQUS decks come as parts, instances and an assembly or flat, CalculiX decks flat.
 //!
 //! Units are mm, N, MPa, tonne, s, K. Solids are one strip along x, its rim at `x = 0`, its mid-plane at `z = 0`; shells are
 //! the whole flower, hub at the origin, spoke 1 along +x, z up.
@@ -130,12 +129,28 @@ pub fn write(
     sink.finish()
 }
 
+/// Undeformed nodes of the set `MIDLINE` of a deck of one spoke, `[x, y, z]` in mm, in the set's order; `x` is the arc
+/// length. They are level unless the deck has an imperfection.
+///
+/// # Errors
+/// [`DeckError::NotOffered`] for a deck that [`plan`] does not offer or that has no single mid-line.
+pub fn midline(design: &Design, kind: DeckKind, solver: DeckSolver) -> Result<Vec<[f64; 3]>, DeckError> {
+    let plan = DeckPlan { kind, solver, nodes: 0, elements: 0, bytes: 0 };
+    let refuse = |reason| DeckError::NotOffered { path: plan.relative_path(), reason };
+    let deck = prepare(design, kind, solver).map_err(refuse)?;
+    deck.midline().ok_or_else(|| refuse("it models all spokes"))
+}
+
 /// A kind of deck, prepared for one design.
 trait Deck {
     /// Number of nodes, reference nodes included.
     fn nodes(&self) -> u64;
     /// Number of elements.
     fn elements(&self) -> u64;
+    /// Nodes of the mid-line, where there is a single one.
+    fn midline(&self) -> Option<Vec<[f64; 3]>> {
+        None
+    }
     /// Writes it: the table of contents.
     fn write(&self, provenance: &Provenance, sink: &mut Sink<'_>) -> Result<(), DeckError>;
 }

@@ -6,6 +6,7 @@
 //! one rigid body at most.
 
 use super::DeckError;
+use super::keywords::materials::Law;
 use super::keywords::step::Increments;
 use super::keywords::{
     amplitudes, boundary, materials, nodes, output, sets, shell_elements, shell_field, shell_nodes, step, systems, ties,
@@ -16,6 +17,7 @@ use super::schedule::Schedule;
 use super::sink::Sink;
 use crate::design::Design;
 use crate::input::model::DeckSolver;
+use crate::materials::Material;
 use crate::mesh::{Flower, HubPlate, Sheet};
 
 /// Simpson points through the thickness; with an elastic material three would do as well.
@@ -185,7 +187,9 @@ impl<'a> ShellModel<'a> {
         if let Some(hub) = &self.hub {
             shell_nodes::hub(sink, hub, self.spoke_nodes(), self.coordinates)?;
         }
-        shell_nodes::single(sink, self.references().into_iter().map(|(_, node, position)| (node, position)))?;
+        for (name, node, position) in self.references() {
+            nodes::more_nodes(sink, &[(&name, node, position)])?;
+        }
         sink.line(&format!("*ELEMENT, TYPE={}, ELSET=SPOKES", self.element()))?;
         shell_elements::spokes(sink, &self.sheet, count)?;
         if let Some(hub) = &self.hub {
@@ -243,7 +247,6 @@ impl<'a> ShellModel<'a> {
                 nodes::reference_nodes(sink, &[(&name, node, position)])?;
             }
         } else {
-            // A flat deck has its nodes in one block, which is all that some readers take.
             for (name, node, _) in self.references() {
                 sets::node_list(sink, &name, "", std::iter::once(node))?;
             }
@@ -297,11 +300,12 @@ impl<'a> ShellModel<'a> {
         if self.reduced() {
             sink.line("*SECTION CONTROLS, NAME=ENHANCED, HOURGLASS=ENHANCED")?;
         }
-        materials::graded(sink, "GRADED", phases, self.layout)?;
+        materials::graded(sink, "GRADED", phases, Law::Linear, self.layout)?;
         let stiffest = &phases.phases()[phases.phases().len() - 1];
         if self.hub.is_some() {
             let densities = phases.phases().iter().all(|p| p.density_kg_m3.is_some());
-            materials::plain(sink, "HUB", stiffest, densities)?;
+            let hub = Material { name: "HUB".to_owned(), ..stiffest.clone() };
+            materials::plain(sink, &hub, Law::Linear, densities)?;
         }
         amplitudes::amplitudes(sink, self.schedule.motions())?;
         let instances: Vec<String> = (0..self.count()).map(|spoke| self.layout.prefix(&instance(spoke))).collect();

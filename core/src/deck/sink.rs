@@ -12,6 +12,8 @@ const FLUSH: usize = 1 << 20;
 const PIECE: usize = 8192;
 /// Groups of rows that are rendered to estimate a block's size.
 const SAMPLES: usize = 24;
+/// Rows of a group that are rendered at least, where it has so many.
+const SAMPLED_ROWS: usize = 64;
 
 enum Target<'a> {
     Writer { out: &'a mut dyn Write, progress: Progress<'a> },
@@ -152,11 +154,11 @@ fn pieces(block: &dyn Rows) -> impl Iterator<Item = Range<usize>> {
     })
 }
 
-/// Size of a block, bytes, from the middle group of evenly spread strata; exact for short blocks.
+/// Size of a block, bytes, from rows of the middle group of evenly spread strata.
 fn estimate(block: &dyn Rows) -> u64 {
     let group = block.group().max(1);
     let groups = block.rows() / group;
-    let weight = |rows: Range<usize>| rows.map(|r| block.weight(r)).sum::<usize>() as f64;
+    let stride = (group / SAMPLED_ROWS).max(1);
     let mut out = Vec::new();
     let mut bytes = 0.0;
     for stratum in 0..SAMPLES {
@@ -165,10 +167,84 @@ fn estimate(block: &dyn Rows) -> u64 {
             continue;
         }
         let middle = usize::midpoint(from, to);
-        let sample = middle * group..(middle + 1) * group;
-        out.clear();
-        block.render(sample.clone(), &mut out);
-        bytes += out.len() as f64 * weight(from * group..to * group) / weight(sample).max(1.0);
+        let (mut sampled, mut weight) = (0, 0);
+        for row in (middle * group..(middle + 1) * group).step_by(stride) {
+            out.clear();
+            block.render(row..row + 1, &mut out);
+            sampled += out.len();
+            weight += block.weight(row);
+        }
+        let all: usize = (from * group..to * group).map(|r| block.weight(r)).sum();
+        bytes += sampled as f64 * all as f64 / weight.max(1) as f64;
     }
     bytes.ceil() as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Row `i` is the number `i`, repeated.
+    struct Numbers;
+
+    impl Rows for Numbers {
+        fn rows(&self) -> usize {
+            20_000
+        }
+        fn group(&self) -> usize {
+            10
+        }
+        fn weight(&self, row: usize) -> usize {
+            row % 7
+        }
+        fn render(&self, rows: Range<usize>, out: &mut Vec<u8>) {
+            for row in rows {
+                (0..self.weight(row)).for_each(|_| out.extend_from_slice(format!("{row}\n").as_bytes()));
+            }
+        }
+    }
+
+    #[test]
+    fn pieces_arrive_in_order_and_their_size_is_foreseen() {
+        let mut expected = b"before\n".to_vec();
+        Numbers.render(0..Numbers.rows(), &mut expected);
+        expected.extend_from_slice(b"after\n");
+        let fill = |sink: &mut Sink<'_>| {
+            sink.line("before").unwrap();
+            sink.rows(&Numbers).unwrap();
+            sink.line("after").unwrap();
+        };
+        let mut out = Vec::new();
+        let mut sink = Sink::new(&mut out, &crate::progress::ignore);
+        fill(&mut sink);
+        assert_eq!(sink.written(), expected.len() as u64);
+        sink.finish().unwrap();
+        assert!(out == expected);
+        let mut counter = Sink::counting();
+        fill(&mut counter);
+        assert!((counter.written() as f64 / expected.len() as f64 - 1.0).abs() < 0.02);
+    }
+
+    #[test]
+    fn it_works_on_the_only_thread_of_a_pool() {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+        let out = pool.install(|| {
+            let mut out = Vec::new();
+            let mut sink = Sink::new(&mut out, &crate::progress::ignore);
+            sink.rows(&Numbers).unwrap();
+            sink.finish().unwrap();
+            out
+        });
+        assert!(out.ends_with(b"19998\n"));
+    }
+
+    #[test]
+    fn lists_have_sixteen_numbers_a_line() {
+        let mut out = Vec::new();
+        let mut sink = Sink::new(&mut out, &crate::progress::ignore);
+        sink.list(1..=33).unwrap();
+        sink.finish().unwrap();
+        let text = String::from_utf8(out).unwrap();
+        assert_eq!(text.lines().map(|l| l.split(',').count()).collect::<Vec<_>>(), [16, 16, 1]);
+    }
 }

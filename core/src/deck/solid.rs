@@ -2,6 +2,7 @@
 
 use super::DeckError;
 use super::keywords::constraints::{Reference, rigid_face};
+use super::keywords::materials::Law;
 use super::keywords::step::Increments;
 use super::keywords::{amplitudes, boundary, nodes, output, sets, step};
 use super::layout::Layout;
@@ -13,8 +14,11 @@ use crate::elastica::morph::Guide;
 use crate::input::model::{DeckSolver, DecksInput};
 use crate::mesh::Block;
 
-/// Rise of a strip that is to buckle, as a share of its thickness.
-const BOW: f64 = 0.05;
+/// Rise of a strip that is to buckle, as a share of its thickness: with a twentieth some runs buckled downward; the
+/// final shape hardly depends on it.
+const BOW: f64 = 0.1;
+/// Strain at the faces from which on the law must hold in large strains.
+const LARGE_STRAIN: f64 = 0.1;
 
 /// Name of the part and of its only instance.
 const PART: &str = "SPOKE";
@@ -26,6 +30,7 @@ pub(super) struct SolidModel<'a> {
     pub layout: Layout,
     pub block: Block,
     pub element: String,
+    pub law: Law,
     schedule: Schedule,
     coordinates: Coordinates,
     rim: Reference,
@@ -44,17 +49,19 @@ impl<'a> SolidModel<'a> {
         };
         // In an assembly, reference nodes are numbered on their own.
         let first = if layout.has_parts() { 1 } else { block.nodes() + 1 };
+        let step = if layout.is_abaqus() { 1_u64 } else { 2 };
         let reference = |name, rotation_name, i, x| Reference {
             name,
             rotation_name,
-            node: first + i,
-            rotation_node: first + 2 + i,
+            node: first + step * i,
+            rotation_node: first + step * i + 1,
             position: [x, 0.0, 0.0],
         };
         Self {
             design,
             layout,
             element: element(&input.decks, layout, block.layers()),
+            law: law(design, layout),
             schedule: Schedule::of(design),
             coordinates: Coordinates::new(length.max(block.y(0, 0).abs())),
             rim: reference("RP-RIM", "RP-RIM-ROT", 0, 0.0),
@@ -92,6 +99,14 @@ impl<'a> SolidModel<'a> {
                 super::number::real(BOW * self.design.input().strips.thickness_mm)
             ));
         }
+        if self.law == Law::NeoHooke {
+            text.push(
+                "Material: compressible neo-Hookean with the moduli and Poisson's ratios of small strains. In large \
+                 displacements CalculiX's *ELASTIC softens in compression and collapses at 42 %; this strip is bent by \
+                 more than a tenth."
+                    .to_owned(),
+            );
+        }
         text
     }
 
@@ -108,16 +123,23 @@ impl<'a> SolidModel<'a> {
         if parts {
             sink.line(&format!("*PART, NAME={PART}"))?;
         }
+        let references = [self.rim.nodes(self.layout), self.hub.nodes(self.layout)].concat();
         nodes::nodes(sink, &self.block, self.coordinates)?;
+        if !parts {
+            nodes::more_nodes(sink, &references)?;
+        }
         elements(sink)?;
         if parts {
             sink.line("*END PART")?;
             sink.line("*ASSEMBLY, NAME=ASSEMBLY")?;
             sink.line(&format!("*INSTANCE, NAME={INSTANCE}, PART={PART}"))?;
             sink.line("*END INSTANCE")?;
+            nodes::reference_nodes(sink, &references)?;
+        } else {
+            for (name, node, _) in references {
+                sets::node_list(sink, name, "", std::iter::once(node))?;
+            }
         }
-        nodes::reference_nodes(sink, &self.rim.nodes(self.layout))?;
-        nodes::reference_nodes(sink, &self.hub.nodes(self.layout))?;
         let instance = self.layout.instance(INSTANCE);
         let block = &self.block;
         let planes = block.planes();
@@ -153,13 +175,23 @@ impl<'a> SolidModel<'a> {
         self.layout.prefix(INSTANCE)
     }
 
+    /// Increments; a strip that is to buckle passes its buckling load, where `(pi^2/3) (t/L)^2` of its length is gone, in
+    /// small ones.
+    fn increments(&self) -> Increments {
+        let Some(Guide::Clamped { length_mm, shortening }) = self.design.guide() else { return Increments::MORPH };
+        let slenderness = self.design.input().strips.thickness_mm / length_mm;
+        let buckled = slenderness * std::f64::consts::PI / (3.0 * shortening).sqrt();
+        let first = (0.1 * buckled).clamp(1e-3, Increments::MORPH.first);
+        Increments { first, ..Increments::MORPH }
+    }
+
     pub(super) fn amplitudes(&self, sink: &mut Sink<'_>) -> Result<(), DeckError> {
         amplitudes::amplitudes(sink, self.schedule.motions())
     }
 
     /// The step from the flat strip to its final shape.
     pub(super) fn step(&self, sink: &mut Sink<'_>) -> Result<(), DeckError> {
-        step::open(sink, self.layout, "MORPH", Increments::MORPH)?;
+        step::open(sink, self.layout, "MORPH", self.increments())?;
         boundary::ends(sink, self.layout, &self.schedule, [&self.rim, &self.hub])?;
         output::requests(sink, self.layout, self.nodes(), &["MIDLINE"], &[&self.rim, &self.hub])?;
         step::close(sink)
@@ -174,4 +206,13 @@ fn element(decks: &DecksInput, layout: Layout, layers: usize) -> String {
     } else {
         decks.solid_element.clone()
     }
+}
+
+/// The law of the phases: linear unless CalculiX would have to go beyond [`LARGE_STRAIN`].
+fn law(design: &Design, layout: Layout) -> Law {
+    let profile = design.profile();
+    let turn = |s: &[f64], theta: &[f64]| ((theta[1] - theta[0]) / (s[1] - s[0])).abs();
+    let curvature = profile.s.windows(2).zip(profile.inclination.windows(2)).map(|(s, theta)| turn(s, theta));
+    let strain = 0.5 * design.input().strips.thickness_mm * curvature.fold(0.0, f64::max);
+    if strain > LARGE_STRAIN && !layout.is_abaqus() { Law::NeoHooke } else { Law::Linear }
 }

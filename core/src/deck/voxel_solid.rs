@@ -43,6 +43,10 @@ impl Deck for VoxelSolid<'_> {
         self.model.block.elements()
     }
 
+    fn midline(&self) -> Option<Vec<[f64; 3]>> {
+        Some(self.model.block.midline())
+    }
+
     fn write(&self, provenance: &Provenance, sink: &mut Sink<'_>) -> Result<(), DeckError> {
         let (model, per_edge) = (&self.model, self.per_edge);
         let (grid, phases) = (model.design.grid(), model.design.phases().phases());
@@ -76,13 +80,13 @@ impl Deck for VoxelSolid<'_> {
                 sets::element_ranges(sink, &format!("SLICE-{}", i + 1), std::iter::once(range))?;
             }
             for (_, phase) in present() {
-                model.section(sink, &format!("PHASE-{}", phase.label()), &phase.label())?;
+                model.section(sink, &format!("PHASE-{}", phase.label()), &materials::material_name(phase))?;
             }
             Ok(())
         })?;
         model.section_controls(sink)?;
         for (_, phase) in present() {
-            materials::plain(sink, &phase.label(), phase, densities)?;
+            materials::plain(sink, phase, model.law, densities)?;
         }
         model.amplitudes(sink)?;
         model.step(sink)

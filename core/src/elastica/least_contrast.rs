@@ -121,7 +121,8 @@ fn solve(
 
 /// The optimum as a line of thrust, anchored at the first inflection where there is one.
 fn line(c: [f64; 3], length: f64, inflections: &[MeridianPoint]) -> ThrustLine {
-    let (horizontal, vertical) = (-c[1] / length, -c[2] / length);
+    // Subtracted from zero, so that no force becomes minus zero.
+    let (horizontal, vertical) = (0.0 - c[1] / length, 0.0 - c[2] / length);
     match inflections.first() {
         Some(at) => ThrustLine { anchor: [at.x, at.z], anchor_moment: 0.0, horizontal, vertical },
         None => ThrustLine { anchor: [0.0; 2], anchor_moment: c[0], horizontal, vertical },

@@ -1,10 +1,15 @@
 //! What is wrong with a design file.
 
 use std::fmt;
+use std::ops::{Deref, DerefMut};
 
-/// A problem in a design file: where it is, what stands there, what is wrong with it and what would help.
+/// A problem in a design file. Its parts are those of [`InputProblem`].
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct InputError {
+pub struct InputError(Box<InputProblem>);
+
+/// Where a problem in a design file is, what stands there, what is wrong with it and what would help.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct InputProblem {
     /// Name of the design file (or of the file it names), as the user gave it.
     pub file: String,
     /// Line in that file, where known.
@@ -23,14 +28,14 @@ impl InputError {
     /// A problem with one key.
     #[must_use]
     pub fn new(key: impl Into<String>, value: impl fmt::Display, problem: impl Into<String>) -> Self {
-        Self {
+        Self(Box::new(InputProblem {
             file: String::new(),
             line: None,
             key: key.into(),
             value: value.to_string(),
             problem: problem.into(),
             help: String::new(),
-        }
+        }))
     }
 
     /// Adds what would help.
@@ -47,6 +52,20 @@ impl InputError {
             file.clone_into(&mut self.file);
         }
         self
+    }
+}
+
+impl Deref for InputError {
+    type Target = InputProblem;
+
+    fn deref(&self) -> &InputProblem {
+        &self.0
+    }
+}
+
+impl DerefMut for InputError {
+    fn deref_mut(&mut self) -> &mut InputProblem {
+        &mut self.0
     }
 }
 

@@ -7,7 +7,7 @@ use std::path::Path;
 use sha2::{Digest, Sha256};
 
 use super::document::{Document, LARGEST_FILE};
-use super::model::{DesignInput, TargetInput};
+use super::model::DesignInput;
 use super::{InputError, check::check};
 
 /// How a design is written.
@@ -69,17 +69,6 @@ impl DesignInput {
         input.load_target(folder).map_err(located)?;
         Ok(input)
     }
-
-    /// Takes in the meridian of a target that names a file, unless it is already there.
-    fn load_target(&mut self, folder: &Path) -> Result<(), InputError> {
-        let _ = folder;
-        Ok(())
-    }
-}
-
-fn read_named(folder: &Path, file: &str, largest: u64) -> Result<Vec<u8>, InputError> {
-    read_bytes(&folder.join(file), largest)
-        .map_err(|problem| InputError::new("target.file", format!("\"{file}\""), problem))
 }
 
 /// Hexadecimal SHA-256.
@@ -102,11 +91,14 @@ pub(crate) fn read_bytes(path: &Path, largest: u64) -> Result<Vec<u8>, String> {
         std::io::ErrorKind::PermissionDenied => "this file may not be read".to_owned(),
         _ => format!("this file cannot be read: {error}"),
     };
-    let file = File::open(path).map_err(describe)?;
-    let metadata = file.metadata().map_err(describe)?;
+    let metadata = std::fs::metadata(path).map_err(describe)?;
     if metadata.is_dir() {
         return Err("this is a folder, not a file".to_owned());
     }
+    if !metadata.is_file() {
+        return Err("this is not a regular file".to_owned());
+    }
+    let file = File::open(path).map_err(describe)?;
     let too_large = |size: u64| {
         Err(format!("this file has {} MB, more than the limit of {} MB", size / 1_000_000, largest / 1_000_000))
     };

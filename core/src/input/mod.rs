@@ -14,8 +14,9 @@ pub mod model;
 pub mod parameters;
 pub mod reference;
 pub mod schema;
+pub mod target_file;
 
-pub use error::InputError;
+pub use error::{InputError, InputProblem};
 pub use model::{
     DeckKind, DeckSolver, DeckStyle, DecksInput, DesignInput, MaterialsInput, StripsInput, TargetInput, ThrustInput,
     VoxelsInput,

@@ -62,7 +62,7 @@ pub enum TargetInput {
         file: Option<String>,
         /// Axis of revolution.
         axis: AxisInput,
-        /// The extracted meridian, `[rho, z]` in the mesh's unit.
+        /// The extracted, smooth meridian from rim to hub, `[rho, z]` in mm.
         #[serde(default)]
         meridian: Vec<[f64; 2]>,
         /// The axis that was found and how far the mesh is from a surface of revolution.
@@ -107,6 +107,12 @@ pub struct RevolutionRecord {
     pub axis_point: [f64; 3],
     /// Distance of the mesh from a surface of revolution, rms over vertices, percent of the rim radius.
     pub rms_percent: f64,
+    /// Factor from the mesh's unit to mm.
+    pub scale: f64,
+    /// Root mean square distance of the mesh's vertices from the smooth meridian, mm.
+    pub residual_rms_mm: f64,
+    /// Largest of these distances, mm.
+    pub residual_max_mm: f64,
 }
 
 /// Number and size of the spokes.

@@ -9,26 +9,28 @@ use super::parameters::{Kind, PARAMETERS, Parameter};
 pub fn json_schema() -> Value {
     let mut root = object("A Voxelastica design");
     for parameter in PARAMETERS.iter().filter(|p| p.kind != Kind::Recorded) {
-        let mut table = &mut root;
-        let mut keys: Vec<&str> = parameter.key.split('.').collect();
-        let leaf = keys.pop().unwrap_or(parameter.key);
-        for key in keys {
-            table = table["properties"]
-                .as_object_mut()
-                .map(|properties| properties.entry(key).or_insert_with(|| container(key)))
-                .map(|entry| if key == "custom" { &mut entry["items"] } else { entry })
-                .unwrap_or_else(|| unreachable!("every container has properties"));
-        }
-        table["properties"][leaf] = property(parameter);
-        if parameter.required && (parameter.targets.is_empty() || leaf == "kind") {
-            if let Some(required) = table["required"].as_array_mut() {
-                required.push(json!(leaf));
-            }
-        }
+        insert(&mut root, parameter.key, parameter);
     }
     root["$schema"] = json!("https://json-schema.org/draft/2020-12/schema");
     root["required"] = json!(["target", "strips", "materials", "voxels"]);
     root
+}
+
+/// Puts a property into the table its dotted key names, making tables on the way.
+fn insert(table: &mut Value, key: &str, parameter: &Parameter) {
+    if let Some((first, rest)) = key.split_once('.') {
+        if table["properties"][first].is_null() {
+            table["properties"][first] = container(first);
+        }
+        let entry = &mut table["properties"][first];
+        insert(if first == "custom" { &mut entry["items"] } else { entry }, rest, parameter);
+        return;
+    }
+    table["properties"][key] = property(parameter);
+    let always = parameter.required && (parameter.targets.is_empty() || key == "kind");
+    if let Some(required) = table["required"].as_array_mut().filter(|_| always) {
+        required.push(json!(key));
+    }
 }
 
 fn object(title: &str) -> Value {

@@ -182,9 +182,39 @@ impl Block {
         self.thickness * (level as f64 / self.layers as f64 - 0.5) + rise
     }
 
-    /// Whether all planes have the same spacing across, so that coordinates depend on the distance from the middle only.
+    /// Nodes of the mid-line, mm, rim to hub.
+    #[must_use]
+    pub fn midline(&self) -> Vec<[f64; 3]> {
+        (0..self.planes()).map(|p| [self.x(p), 0.0, self.z(p, self.layers / 2)]).collect()
+    }
+
+    /// Where the nodes of a plane sit across the width.
     #[must_use]
     pub fn spacing(&self) -> &Spacing {
         &self.spacing
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn planes_carry_the_nodes_of_their_wider_slice() {
+        let block = Block::new(3.0, 2.0, 2, vec![4, 2, 4], Spacing::Even(1.0));
+        assert_eq!((block.nodes(), block.elements()), (4 * 5 * 3, (4 + 2 + 4) * 2));
+        assert_eq!((0..4).map(|p| block.plane_across(p)).collect::<Vec<_>>(), [4, 4, 4, 4]);
+        assert_eq!(block.midline_node(1), 15 + 5 + 2 + 1);
+        // The narrow slice hangs on the middle nodes of the planes beside it.
+        assert_eq!(block.row_connectivity(1, 0), [17, 32, 33, 18, 22, 37, 38, 23]);
+        assert_eq!((block.y(1, 0), block.y(1, 2), block.z(1, 0)), (-2.0, 0.0, -1.0));
+    }
+
+    #[test]
+    fn a_bow_keeps_the_ends_and_lifts_the_middle() {
+        let block = Block::new(10.0, 2.0, 2, vec![2; 4], Spacing::Width(vec![3.0; 5])).bowed(0.2);
+        let line = block.midline();
+        assert_eq!((line[0], line[4][0]), ([0.0; 3], 10.0));
+        assert!((line[2][2] - 0.2).abs() < 1e-15 && (line[1][2] - 0.1).abs() < 1e-15 && line[4][2].abs() < 1e-15);
     }
 }

@@ -24,7 +24,7 @@ impl Provenance {
         if let Some(target) = value.get_mut("target").and_then(serde_json::Value::as_object_mut) {
             target.remove("file");
         }
-        // serde_json keeps the keys of a map sorted, so the text is canonical.
+        // Fields come in the order of their declaration, so the text is canonical.
         let hash = hex_sha256(value.to_string().as_bytes());
         Self { version: env!("CARGO_PKG_VERSION").to_owned(), seed: input.voxels.seed, design_sha256: hash }
     }

@@ -87,7 +87,7 @@ mod tests {
     fn numbers_are_short_and_exact_to_ten_digits() {
         assert_eq!(number(0.1 + 0.2), "0.3");
         assert_eq!(number(-0.0), "0");
-        assert_eq!(number(63.661_977_236_758_134), "63.66197724");
+        assert_eq!(number(63.661_977_236_758), "63.66197724");
         assert_eq!(number(1e-12), "0.000000000001");
     }
 }

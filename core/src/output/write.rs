@@ -1,7 +1,6 @@
 //! A design's files, in the order in which they are written.
 
 use std::fs;
-use std::io::Write;
 use std::path::Path;
 
 use super::folder::{Staging, WriteFailure, free_bytes};
@@ -64,13 +63,13 @@ pub fn write_design(
     let provenance = Provenance::of(design.input());
     let summary = Summary::of(design);
     let profile = design.profile();
-    let field = crate::modulus_field::ModulusField::fit(&profile.s, &profile.modulus_mpa, design.input().strips.length_mm)
-        .map_err(|e| Error::Internal(format!("the modulus field: {e}")))?;
+    let field =
+        crate::modulus_field::ModulusField::fit(&profile.s, &profile.modulus_mpa, design.input().strips.length_mm)
+            .map_err(|e| Error::Internal(format!("the modulus field: {e}")))?;
     let decks = deck::plan(design);
     require_room(folder, &decks, options)?;
 
-    let mut files: Vec<(String, String)> =
-        decks.iter().map(|d| (d.relative_path().to_owned(), describe(d))).collect();
+    let mut files: Vec<(String, String)> = decks.iter().map(|d| (d.relative_path().to_owned(), describe(d))).collect();
     files.push(("profile.csv".to_owned(), format!("the profile at {} stations", profile.s.len())));
     files.push(("slices.csv".to_owned(), format!("counts, modulus and stiffness of {} slices", design.slices().len())));
     files.push(("report.html".to_owned(), "this page".to_owned()));
@@ -111,9 +110,14 @@ fn require_room(folder: &Path, decks: &[DeckPlan], options: WriteOptions) -> Res
     match free_bytes(folder) {
         Some(free) if needed > free && !options.allow_large => Err(Error::Output {
             path: folder.to_owned(),
-            problem: format!("about {} MB are to be written, but only {} MB are free", needed / 1_000_000, free / 1_000_000),
-            help: "use larger voxels, write fewer decks (decks.write), choose another disk with -o, or insist with --yes"
-                .to_owned(),
+            problem: format!(
+                "about {} MB are to be written, but only {} MB are free",
+                needed / 1_000_000,
+                free / 1_000_000
+            ),
+            help:
+                "use larger voxels, write fewer decks (decks.write), choose another disk with -o, or insist with --yes"
+                    .to_owned(),
         }),
         _ => Ok(()),
     }

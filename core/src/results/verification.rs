@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::ccx_dat::{NodePrint, parse};
+use super::ccx_dat::{NodePrint, Quantity, parse};
 use super::comparison::{MidlinePoint, compare};
 use crate::design::Design;
 use crate::error::Error;
@@ -131,7 +131,7 @@ fn check_deck(deck: &Path, provenance: &Provenance) -> Result<(), Error> {
 fn midline(design: &Design, run: &Run, deck: &Path) -> Result<Vec<MidlinePoint>, Error> {
     let broken = |what: String| Error::Solver(format!("{}: {what}", deck.display()));
     let prints = parse(&run.dat).map_err(|e| broken(format!("the solver's result cannot be read: {e}")))?;
-    let is_midline = |p: &&NodePrint| p.set.eq_ignore_ascii_case("MIDLINE") && p.quantity.starts_with("displacements");
+    let is_midline = |p: &&NodePrint| p.set == "MIDLINE" && p.quantity == Quantity::Displacement;
     let last = prints
         .iter()
         .filter(is_midline)
@@ -174,7 +174,9 @@ fn midline_coordinates(deck: &Path, print: &NodePrint) -> Result<Vec<(f64, f64)>
             continue;
         }
         let mut cells = line.split(',').map(str::trim);
-        let Some(place) = cells.next().and_then(|id| id.parse().ok()).and_then(|id: u64| wanted.get(&id)) else { continue };
+        let Some(place) = cells.next().and_then(|id| id.parse().ok()).and_then(|id: u64| wanted.get(&id)) else {
+            continue;
+        };
         let coordinates: Vec<f64> = cells.filter_map(|c| c.parse().ok()).collect();
         if let [x, _, z] = coordinates[..] {
             found[*place] = Some((x, z));

@@ -125,11 +125,8 @@ impl Ccx {
     /// # Errors
     /// [`Error::Solver`] where the program is missing or cannot be started.
     pub fn version(&self) -> Result<String, Error> {
-        let output = Command::new(&self.executable)
-            .arg("-v")
-            .stdin(Stdio::null())
-            .output()
-            .map_err(|e| self.not_started(&e))?;
+        let output =
+            Command::new(&self.executable).arg("-v").stdin(Stdio::null()).output().map_err(|e| self.not_started(&e))?;
         let text = String::from_utf8_lossy(&output.stdout).into_owned();
         let version = text.split_whitespace().find(|word| word.starts_with(|c: char| c.is_ascii_digit()));
         match version {

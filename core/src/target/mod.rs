@@ -1,14 +1,34 @@
 //! Target meridians: the curve a spoke must take, as a function of arc length.
 
+mod axis;
+mod banded;
 pub mod ellipse;
 mod error;
+mod fitted;
+mod mesh_file;
+mod ordering;
+mod outline;
+mod points;
 pub mod polynomial;
+mod profile;
 mod resolve;
+mod revolution;
+mod scale;
+mod smoothing;
+mod spline_curve;
+mod triangle_mesh;
 
+pub use axis::Axis;
 pub use ellipse::EllipseMeridian;
-pub use error::TargetError;
+pub use error::{Row, TargetError};
+pub use fitted::FittedMeridian;
+pub use mesh_file::{MAX_MESH_BYTES, MeshFormat, read_mesh, read_mesh_file};
+pub use points::{MAX_POINTS, MAX_POINTS_BYTES, PointTable, read_points, read_points_file};
 pub use polynomial::PolynomialMeridian;
 pub use resolve::{FitReport, Target, resolve};
+pub use revolution::RevolutionFit;
+pub use spline_curve::SplineMeridian;
+pub use triangle_mesh::{MAX_TRIANGLES, MAX_VERTICES, TriangleMesh};
 
 /// The state of a meridian at one arc length.
 ///

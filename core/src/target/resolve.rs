@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{EllipseMeridian, MeridianCurve, MeridianPoint, PolynomialMeridian};
+use super::{EllipseMeridian, FittedMeridian, MeridianCurve, MeridianPoint, PolynomialMeridian, TargetError};
 use crate::design::STATIONS;
 use crate::error::Error;
 use crate::input::{DesignInput, TargetInput};
@@ -51,10 +51,33 @@ pub fn resolve(input: &DesignInput) -> Result<Option<Target>, Error> {
             ),
             None,
         ),
-        TargetInput::Points { .. } | TargetInput::Mesh { .. } => {
-            return Err(Error::Internal("not merged yet".to_owned()));
+        TargetInput::Points { meridian, .. } => {
+            let fitted = fit(input, meridian)?;
+            let report = FitReport {
+                scale: fitted.scale,
+                residual_rms_mm: fitted.residual_rms_mm,
+                residual_max_mm: fitted.residual_max_mm,
+            };
+            (Arc::new(fitted.curve), Some(report))
+        }
+        TargetInput::Mesh { meridian, revolution, .. } => {
+            let report = revolution.as_ref().map(|r| FitReport {
+                scale: r.scale,
+                residual_rms_mm: r.residual_rms_mm,
+                residual_max_mm: r.residual_max_mm,
+            });
+            (Arc::new(fit(input, meridian)?.curve), report)
         }
     };
     let stations = curve.stations(STATIONS);
     Ok(Some(Target { curve, stations, fit }))
+}
+
+/// The smooth curve through the points of a target.
+fn fit(input: &DesignInput, meridian: &[[f64; 2]]) -> Result<FittedMeridian, Error> {
+    FittedMeridian::from_points(meridian, input.strips.length_mm, input.hub_radius()).map_err(|error| {
+        let key = if matches!(error, TargetError::EndsOutsideHub { .. }) { "strips.hub_radius_mm" } else { "target" };
+        let value = if key == "target" { String::new() } else { input.hub_radius().to_string() };
+        Error::target(key, value, &error)
+    })
 }

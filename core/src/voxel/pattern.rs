@@ -49,7 +49,7 @@ impl Pattern {
         let width = 2 * half_width;
         let place = |layer: usize, across: usize| (layer * width + across) as u32;
         // Columns from the middle outwards, alternating sides.
-        let outward = |k: usize| if k % 2 == 0 { half_width - 1 - k / 2 } else { half_width + k / 2 };
+        let outward = |k: usize| if k.is_multiple_of(2) { half_width - 1 - k / 2 } else { half_width + k / 2 };
         let by_columns = |column: &dyn Fn(usize) -> usize| -> Vec<u32> {
             (0..width / 2)
                 .flat_map(|pair| (0..layers).map(move |layer| (pair, layer)))
@@ -84,8 +84,8 @@ impl Pattern {
                 let middle_out = |k: usize| {
                     let centre = layers / 2;
                     if layers % 2 == 1 {
-                        if k % 2 == 0 { centre - k / 2 } else { centre + k.div_ceil(2) }
-                    } else if k % 2 == 0 {
+                        if k.is_multiple_of(2) { centre - k / 2 } else { centre + k.div_ceil(2) }
+                    } else if k.is_multiple_of(2) {
                         centre - 1 - k / 2
                     } else {
                         centre + k / 2

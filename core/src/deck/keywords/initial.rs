@@ -22,7 +22,7 @@ pub(crate) fn modulus_field(
     sink.rows(&FieldRows { block, prefix, moduli })
 }
 
-/// One row is one plane.
+/// One row is one level of one plane.
 struct FieldRows<'a> {
     block: &'a Block,
     prefix: &'a str,
@@ -31,23 +31,25 @@ struct FieldRows<'a> {
 
 impl Rows for FieldRows<'_> {
     fn rows(&self) -> usize {
-        self.block.planes()
+        self.block.planes() * self.group()
     }
 
     fn group(&self) -> usize {
-        1
+        self.block.layers() + 1
     }
 
     fn weight(&self, row: usize) -> usize {
-        (self.block.first_node(row + 1) - self.block.first_node(row)) as usize
+        self.block.plane_across(row / self.group()) + 1
     }
 
     fn render(&self, rows: Range<usize>, out: &mut Vec<u8>) {
-        for plane in rows {
+        let levels = self.group();
+        for row in rows {
+            let (plane, level) = (row / levels, row % levels);
+            let across = self.block.plane_across(plane);
             let tail = format!(",{}\n", real(self.moduli[plane]));
-            let first = self.block.first_node(plane);
-            let mut id = Counter::new(first);
-            for _ in first..self.block.first_node(plane + 1) {
+            let mut id = Counter::new(self.block.row_start(plane, level, across));
+            for _ in 0..=across {
                 out.extend_from_slice(self.prefix.as_bytes());
                 out.extend_from_slice(id.text());
                 out.extend_from_slice(tail.as_bytes());

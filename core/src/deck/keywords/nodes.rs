@@ -13,7 +13,12 @@ pub(crate) fn nodes(sink: &mut Sink<'_>, block: &Block, format: Coordinates) -> 
     sink.rows(&NodeRows::new(block, format))
 }
 
-/// Writes reference nodes, each in a set of its own name.
+/// Adds reference nodes to the nodes just written: other programs read one `*NODE` block of a flat deck only.
+pub(crate) fn more_nodes(sink: &mut Sink<'_>, nodes: &[(&str, u64, [f64; 3])]) -> Result<(), DeckError> {
+    nodes.iter().try_for_each(|(_, id, [x, y, z])| sink.line(&format!("{id},{},{},{}", real(*x), real(*y), real(*z))))
+}
+
+/// Writes reference nodes as blocks of their own, each in a set of its own name.
 pub(crate) fn reference_nodes(sink: &mut Sink<'_>, nodes: &[(&str, u64, [f64; 3])]) -> Result<(), DeckError> {
     for (name, id, [x, y, z]) in nodes {
         sink.line(&format!("*NODE, NSET={name}"))?;

@@ -7,7 +7,7 @@ use crate::deck::sink::Sink;
 use super::constraints::Reference;
 
 /// Nodes up to which every fifth increment is kept as a field; beyond, only the last one.
-const MANY_NODES: u64 = 100_000;
+const MANY_NODES: u64 = 25_000;
 
 /// Displacements and stresses of the whole model now and then, the mid-line and the reactions in every increment.
 pub(crate) fn requests(

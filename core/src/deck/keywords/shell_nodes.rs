@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::deck::DeckError;
-use crate::deck::number::{Coordinates, Counter, real};
+use crate::deck::number::{Coordinates, Counter};
 use crate::deck::sink::{Rows, Sink};
 use crate::mesh::{Flower, HubPlate, Sheet};
 
@@ -22,14 +22,6 @@ pub(crate) fn spokes(
 pub(crate) fn hub(sink: &mut Sink<'_>, plate: &HubPlate, offset: u64, format: Coordinates) -> Result<(), DeckError> {
     sink.line(&format!("{},0,0,0", offset + 1))?;
     sink.rows(&HubRows { plate, offset, format })
-}
-
-/// Writes single nodes, in the block that is open.
-pub(crate) fn single(sink: &mut Sink<'_>, nodes: impl Iterator<Item = (u64, [f64; 3])>) -> Result<(), DeckError> {
-    for (node, [x, y, z]) in nodes {
-        sink.line(&format!("{node},{},{},{}", real(x), real(y), real(z)))?;
-    }
-    Ok(())
 }
 
 /// One row is one row of one spoke's nodes.

@@ -2,6 +2,7 @@
 
 use crate::deck::DeckError;
 use crate::deck::layout::Layout;
+use crate::deck::number::real;
 use crate::deck::sink::Sink;
 
 /// Increments of the step's time, which runs from 0 to 1.
@@ -28,7 +29,7 @@ pub(crate) fn open(sink: &mut Sink<'_>, layout: Layout, name: &str, by: Incremen
         sink.line("*STEP, NLGEOM, INC=2000")?;
     }
     sink.line("*STATIC")?;
-    sink.line(&format!("{},1.,{},{}", by.first, by.least, by.most))
+    sink.line(&format!("{},1.,{},{}", real(by.first), real(by.least), real(by.most)))
 }
 
 /// Closes the step.

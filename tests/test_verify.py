@@ -1,0 +1,149 @@
+"""`verify` with the real CalculiX, and with solvers that are missing or fail."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+from conftest import EXAMPLES, design, read_json, run
+
+STRIP = """
+[target]
+kind = "hemi-ellipsoid"
+[strips]
+count = 8
+length_mm = {length}
+hub_radius_mm = {hub}
+thickness_mm = 2.0
+[thrust]
+hub = "{support}"
+[materials]
+phases = ["FLX9070", "FLX9095"]
+[voxels]
+size_mm = {size}
+[decks]
+solvers = ["calculix"]
+"""
+
+long = pytest.mark.skipif(not os.environ.get("VOXELASTICA_LONG"), reason="a long run: scripts/test --long")
+
+
+def verified(folder: Path, *options: object, limit: float) -> dict:
+    """Verifies a design and returns the figures, which must be within a limit (percent of the length)."""
+    result = run("verify", folder, *options, "--target-error", limit)
+    assert result.code == 0, result.err
+    figures = read_json(folder / "verification.json")
+    print(folder.name, {key: value for key, value in figures.items() if key != "midline_mm"})
+    assert figures["max_error_percent"] <= limit
+    assert figures["rms_error_percent"] <= figures["max_error_percent"]
+    assert figures["solver"]["name"] == "CalculiX" and figures["solver"]["version"]
+    assert figures["design_sha256"] == read_json(folder / "design.json")["provenance"]["design_sha256"]
+    assert "<svg" in (folder / "verification.svg").read_text(encoding="utf-8")
+    return figures
+
+
+def test_a_graded_hemisphere_morphs_into_the_target(ccx: str, examples: dict[str, Path]) -> None:
+    figures = verified(examples["hemisphere"], limit=0.5)
+    midline = figures["midline_mm"]
+    assert midline[0][1:] == pytest.approx([0, 0], abs=1e-6)
+    assert midline[-1][1] == pytest.approx(63.66198, abs=1e-3)
+
+
+def test_a_held_uniform_hemisphere_morphs_into_the_target(ccx: str, tmp_path: Path) -> None:
+    folder = design(STRIP.format(length=100.0, hub=10.0, support="held", size=1.0), tmp_path)
+    assert read_json(folder / "design.json")["summary"]["contrast"] == pytest.approx(1, abs=1e-6)
+    verified(folder, limit=0.5)
+
+
+def test_a_voxel_hemisphere_strip_morphs_into_the_target(ccx: str, tmp_path: Path) -> None:
+    folder = design(STRIP.format(length=40.0, hub=4.0, support="free", size=1.0), tmp_path)
+    verified(folder, "--model", "voxel", limit=1.5)
+
+
+@long
+@pytest.mark.parametrize("name", ["nose_cone", "trumpet", "roof"])
+def test_the_papers_other_shapes_morph_into_their_targets(ccx: str, examples: dict[str, Path], name: str) -> None:
+    verified(examples[name], limit=0.5)
+
+
+@long
+@pytest.mark.parametrize("name", ["rectangular_0.5", "rectangular_1", "rectangular_2"])
+def test_clamped_strips_take_the_elasticas_shape(ccx: str, examples: dict[str, Path], name: str) -> None:
+    verified(examples[name], limit=1.0)
+
+
+@long
+def test_free_standing_shapes_of_the_paper_with_a_pair_that_reaches_them(ccx: str, tmp_path: Path) -> None:
+    pair = (
+        '[[materials.custom]]\nname = "a"\nmodulus_mpa = 1.0\npoisson = 0.3\n'
+        '[[materials.custom]]\nname = "b"\nmodulus_mpa = 12.0\npoisson = 0.3\n'
+    )
+    for name in ["nose_cone", "trumpet"]:
+        text = (EXAMPLES / f"{name}.toml").read_text(encoding="utf-8")
+        text = text.replace('hub = "held"', 'hub = "free"').replace('"FLX9070", "FLX9095"', '"a", "b"') + pair
+        verified(design(text, tmp_path, name), limit=0.5)
+
+
+def small(tmp_path: Path) -> Path:
+    return design(STRIP.format(length=20.0, hub=4.0, support="free", size=1.0), tmp_path)
+
+
+def stand_in(tmp_path: Path, body: str) -> Path:
+    """A program in the solver's place."""
+    script = tmp_path / "fake-ccx"
+    script.write_text("#!/bin/sh\nif [ \"$1\" = -v ]; then echo 'This is Version 9.99'; exit 0; fi\n" + body)
+    script.chmod(0o755)
+    return script
+
+
+def test_a_missing_solver_says_what_would_help(program: Path, tmp_path: Path) -> None:
+    folder = small(tmp_path)
+    result = run("verify", folder, "--ccx", tmp_path / "nowhere")
+    assert result.code == 4 and "not found" in result.err and "--ccx" in result.err
+    assert not (folder / "verification.json").exists()
+
+
+@pytest.mark.parametrize(
+    ("body", "words"),
+    [
+        ("echo ' *ERROR in gen3dmodel: zero volume'; exit 201", ["code 201", "zero volume"]),
+        ("echo ' *ERROR reading *STEP'; exit 0", ["reported an error", "*STEP"]),
+        ("echo ok; echo ' 1 1 1 4 0.5 0.5 0.5' > job.sta; exit 0", ["50.0 % of the step"]),
+        ("echo ok; echo ' 1 1 1 4 1.0 1.0 1.0' > job.sta; exit 0", ["result"]),
+        (
+            "echo ok; echo ' 1 1 1 4 1.0 1.0 1.0' > job.sta; echo 'garbage 1 2' > job.dat; exit 0",
+            ["result"],
+        ),
+        ("kill -9 $$", ["killed"]),
+    ],
+)
+def test_a_failing_solver_gives_its_last_lines_and_no_figures(
+    program: Path, tmp_path: Path, body: str, words: list[str]
+) -> None:
+    folder = small(tmp_path)
+    result = run("verify", folder, "--ccx", stand_in(tmp_path, body))
+    assert result.code == 4, (result.code, result.err)
+    for word in words:
+        assert word in result.err, result.err
+    assert not (folder / "verification.json").exists()
+
+
+def test_decks_of_another_design_are_not_verified(program: Path, tmp_path: Path) -> None:
+    folder = small(tmp_path)
+    deck = folder / "calculix" / "graded_solid.inp"
+    sha = read_json(folder / "design.json")["provenance"]["design_sha256"]
+    deck.write_text(deck.read_text(encoding="utf-8").replace(sha, "0" * 64), encoding="utf-8")
+    result = run("verify", folder)
+    assert result.code == 2 and "another design" in result.err
+    deck.unlink()
+    result = run("verify", folder)
+    assert result.code == 2 and "not there" in result.err
+    assert run("verify", tmp_path / "nowhere").code == 2
+
+
+def test_a_missed_target_error_has_its_own_exit_code(ccx: str, tmp_path: Path) -> None:
+    folder = small(tmp_path)
+    result = run("verify", folder, "--target-error", "0.0001")
+    assert result.code == 6 and "--target-error" in result.err
+    assert (folder / "verification.json").exists()
