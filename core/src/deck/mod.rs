@@ -5,15 +5,19 @@
 //! that renders long blocks in parallel and holds only a few megabytes of them; the same pass over a counting sink estimates
 //! its size. ABAQUS decks come as parts, instances and an assembly or flat, CalculiX decks flat.
 //!
-//! Units are mm, N, MPa, tonne, s, K. One strip lies along x, its rim at `x = 0`, its mid-plane at `z = 0`.
+//! Units are mm, N, MPa, tonne, s, K. Solids are one strip along x, its rim at `x = 0`, its mid-plane at `z = 0`; shells are
+//! the whole flower, hub at the origin, spoke 1 along +x, z up.
 
+mod graded_shell;
 mod graded_solid;
 mod keywords;
 mod layout;
 mod number;
 mod schedule;
+mod shell;
 mod sink;
 mod solid;
+mod voxel_shell;
 mod voxel_solid;
 
 use std::io::{self, Write};
@@ -158,6 +162,7 @@ fn prepare<'a>(design: &'a Design, kind: DeckKind, solver: DeckSolver) -> Result
         (DeckKind::VoxelSolid, _) => Ok(Box::new(voxel_solid::VoxelSolid::new(design, solver))),
         (_, DeckSolver::Calculix) => Err("its shells diverge in large rotations"),
         (_, _) if design.input().is_strip() => Err("a rectangular strip is no flower"),
-        (DeckKind::GradedShell | DeckKind::VoxelShell, DeckSolver::Abaqus) => Err("not written yet"),
+        (DeckKind::GradedShell, DeckSolver::Abaqus) => Ok(Box::new(graded_shell::GradedShell::new(design))),
+        (DeckKind::VoxelShell, DeckSolver::Abaqus) => Ok(Box::new(voxel_shell::VoxelShell::new(design))),
     }
 }

@@ -17,24 +17,11 @@ pub(crate) fn requests(
     midlines: &[&str],
     references: &[&Reference],
 ) -> Result<(), DeckError> {
-    let frequency = if nodes > MANY_NODES { 2000 } else { 5 };
     if layout.is_abaqus() {
-        sink.line(&format!("*OUTPUT, FIELD, FREQUENCY={frequency}"))?;
-        sink.line("*NODE OUTPUT")?;
-        sink.line("U,COORD")?;
-        sink.line("*ELEMENT OUTPUT")?;
-        sink.line("S,LE")?;
-        sink.line("*OUTPUT, HISTORY, FREQUENCY=1")?;
-        for set in midlines {
-            sink.line(&format!("*NODE OUTPUT, NSET={set}"))?;
-            sink.line("U,COORD")?;
-        }
-        for reference in references {
-            sink.line(&format!("*NODE OUTPUT, NSET={}", reference.name))?;
-            sink.line("U,UR,RF,RM")?;
-        }
-        return Ok(());
+        let references: Vec<&str> = references.iter().map(|r| r.name).collect();
+        return abaqus_requests(sink, nodes, "S,LE", midlines, &references);
     }
+    let frequency = frequency(nodes);
     for set in midlines {
         sink.line(&format!("*NODE PRINT, NSET={set}"))?;
         sink.line("U")?;
@@ -47,4 +34,34 @@ pub(crate) fn requests(
     sink.line("U")?;
     sink.line(&format!("*EL FILE, FREQUENCY={frequency}"))?;
     sink.line("S")
+}
+
+/// The same for ABAQUS, with the elements' variables and the reference nodes' sets.
+pub(crate) fn abaqus_requests(
+    sink: &mut Sink<'_>,
+    nodes: u64,
+    variables: &str,
+    midlines: &[&str],
+    references: &[&str],
+) -> Result<(), DeckError> {
+    sink.line(&format!("*OUTPUT, FIELD, FREQUENCY={}", frequency(nodes)))?;
+    sink.line("*NODE OUTPUT")?;
+    sink.line("U,COORD")?;
+    sink.line("*ELEMENT OUTPUT")?;
+    sink.line(variables)?;
+    sink.line("*OUTPUT, HISTORY, FREQUENCY=1")?;
+    for set in midlines {
+        sink.line(&format!("*NODE OUTPUT, NSET={set}"))?;
+        sink.line("U,COORD")?;
+    }
+    for set in references {
+        sink.line(&format!("*NODE OUTPUT, NSET={set}"))?;
+        sink.line("U,UR,RF,RM")?;
+    }
+    Ok(())
+}
+
+/// Every so many increments the whole model is kept.
+fn frequency(nodes: u64) -> u32 {
+    if nodes > MANY_NODES { 2000 } else { 5 }
 }

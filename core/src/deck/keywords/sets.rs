@@ -26,6 +26,18 @@ pub(crate) fn node_list(
     sink.list(nodes)
 }
 
+/// An element set of consecutive labels; `options` is appended to the keyword line (an instance).
+pub(crate) fn element_range(
+    sink: &mut Sink<'_>,
+    name: &str,
+    options: &str,
+    first: u64,
+    last: u64,
+) -> Result<(), DeckError> {
+    sink.line(&format!("*ELSET, ELSET={name}{options}, GENERATE"))?;
+    sink.line(&format!("{first},{last},1"))
+}
+
 /// An element set of ranges of consecutive labels, ends included.
 pub(crate) fn element_ranges(
     sink: &mut Sink<'_>,
