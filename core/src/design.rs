@@ -323,10 +323,12 @@ impl Design {
             ));
         }
         let layers = self.grid.layers();
-        if layers % 2 == 1 && self.input.decks.calculix_elements_per_voxel_edge % 2 == 1 {
+        let decks = &self.input.decks;
+        let odd = |edge: usize| layers * edge % 2 == 1;
+        if odd(decks.calculix_elements_per_voxel_edge) || odd(decks.elements_per_voxel_edge) {
             self.warnings.push(format!(
-                "an odd number of layers ({layers}) has no nodes on the mid-plane: the voxel_solid deck for CalculiX uses \
-                 twice as many elements along a voxel's edge"
+                "an odd number of layers ({layers}) has no nodes on the mid-plane: voxel_solid decks with an odd number of \
+                 elements along a voxel's edge use twice as many"
             ));
         }
         if let Some(residual) = self.target.as_ref().and_then(|t| t.fit.as_ref()).map(|f| f.residual_max_mm)

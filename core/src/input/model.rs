@@ -8,6 +8,9 @@ use crate::materials::{Material, library};
 use crate::micromechanics::PhaseSet;
 use crate::voxel::{Lattice, Match, Pattern, Rounding};
 
+/// Longest name of a material in element sets; solvers take labels of 80 characters.
+const LONGEST_LABEL: usize = 60;
+
 /// A complete design: the design file with defaults filled in and the contents of the files it names.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -279,6 +282,10 @@ impl DesignInput {
             if material.label().is_empty() {
                 let problem = "the name has no letter or digit of the English alphabet to name element sets by";
                 return Err(InputError::new(key, quoted(name), problem).help("rename the material"));
+            }
+            if material.label().len() > LONGEST_LABEL {
+                let problem = format!("names have at most {LONGEST_LABEL} letters and digits, for solvers' labels");
+                return Err(InputError::new(key, quoted(name), problem).help("shorten the material's name"));
             }
             phases.push(material.clone());
         }

@@ -8,6 +8,7 @@ use super::ccx_dat::{NodePrint, Quantity, parse};
 use super::comparison::{MidlinePoint, compare};
 use crate::design::Design;
 use crate::error::Error;
+use crate::input::model::{DeckKind, DeckSolver};
 use crate::output::Provenance;
 use crate::solver::ccx::{Ccx, Run, Status};
 
@@ -28,6 +29,13 @@ impl Model {
         match self {
             Self::Graded => "calculix/graded_solid.inp",
             Self::Voxel => "calculix/voxel_solid.inp",
+        }
+    }
+
+    fn kind(self) -> DeckKind {
+        match self {
+            Self::Graded => DeckKind::GradedSolid,
+            Self::Voxel => DeckKind::VoxelSolid,
         }
     }
 }
@@ -89,7 +97,7 @@ pub fn verify(
     let deck = folder.join(model.deck());
     check_deck(&deck, &provenance)?;
     let run = ccx.run(&deck, work, progress)?;
-    let midline = midline(design, &run, &deck)?;
+    let midline = midline(design, model, &run, &deck)?;
     let comparison = compare(design.profile(), &midline)
         .ok_or_else(|| Error::Solver(format!("{}: the solver printed no mid-line", deck.display())))?;
     Ok(Verification {
@@ -133,7 +141,7 @@ fn check_deck(deck: &Path, provenance: &Provenance) -> Result<(), Error> {
 }
 
 /// The deformed mid-line at the end of the step, seen from the rim.
-fn midline(design: &Design, run: &Run, deck: &Path) -> Result<Vec<MidlinePoint>, Error> {
+fn midline(design: &Design, model: Model, run: &Run, deck: &Path) -> Result<Vec<MidlinePoint>, Error> {
     let broken = |what: String| Error::Solver(format!("{}: {what}", deck.display()));
     let prints = parse(&run.dat).map_err(|e| broken(format!("the solver's result cannot be read: {e}")))?;
     let is_midline = |p: &&NodePrint| p.set == "MIDLINE" && p.quantity == Quantity::Displacement;
@@ -145,49 +153,20 @@ fn midline(design: &Design, run: &Run, deck: &Path) -> Result<Vec<MidlinePoint>,
     if last.time < 1.0 - 1e-6 {
         return Err(broken(format!("the last mid-line is that at {:.1} % of the step", 100.0 * last.time)));
     }
-    let start = midline_coordinates(deck, last).map_err(broken)?;
-    let Some(((x0, _), (_, u0))) = start.first().zip(last.rows.first()) else {
+    let flat = crate::deck::midline(design, model.kind(), DeckSolver::Calculix)
+        .map_err(|e| broken(format!("the deck's mid-line: {e}")))?;
+    if flat.len() != last.rows.len() {
+        return Err(broken(format!("the solver printed {} nodes of a mid-line of {}", last.rows.len(), flat.len())));
+    }
+    let Some(((rim, _), (_, pushed))) = flat.first().map(|p| (p[0], p[2])).zip(last.rows.first()) else {
         return Err(broken("the solver printed an empty mid-line".to_owned()));
     };
-    let length = design.input().strips.length_mm;
-    let points: Vec<MidlinePoint> = start
-        .iter()
-        .zip(&last.rows)
-        .map(|((x, z), (_, u))| [x.clamp(0.0, length), x + u[0] - (x0 + u0[0]), z + u[2]])
-        .collect();
+    let points: Vec<MidlinePoint> =
+        flat.iter().zip(&last.rows).map(|([x, _, z], (_, u))| [*x, x + u[0] - (rim + pushed[0]), z + u[2]]).collect();
     match points.iter().flatten().find(|c| !c.is_finite()) {
         Some(value) => Err(broken(format!("the solver's mid-line holds {value}"))),
         None => Ok(points),
     }
-}
-
-/// Flat `(x, z)` of the printed nodes, from the deck itself.
-fn midline_coordinates(deck: &Path, print: &NodePrint) -> Result<Vec<(f64, f64)>, String> {
-    use std::io::BufRead;
-    let file = std::fs::File::open(deck).map_err(|e| e.to_string())?;
-    let wanted: std::collections::HashMap<u64, usize> =
-        print.rows.iter().enumerate().map(|(i, (id, _))| (*id, i)).collect();
-    let mut found = vec![None; print.rows.len()];
-    let mut in_nodes = false;
-    for line in std::io::BufReader::with_capacity(1 << 20, file).lines() {
-        let line = line.map_err(|e| e.to_string())?;
-        if line.starts_with('*') {
-            in_nodes = line.split(',').next().is_some_and(|k| k.trim().eq_ignore_ascii_case("*NODE"));
-            continue;
-        }
-        if !in_nodes {
-            continue;
-        }
-        let mut cells = line.split(',').map(str::trim);
-        let Some(place) = cells.next().and_then(|id| id.parse().ok()).and_then(|id: u64| wanted.get(&id)) else {
-            continue;
-        };
-        let coordinates: Vec<f64> = cells.filter_map(|c| c.parse().ok()).collect();
-        if let [x, _, z] = coordinates[..] {
-            found[*place] = Some((x, z));
-        }
-    }
-    found.into_iter().collect::<Option<Vec<_>>>().ok_or_else(|| "MIDLINE names nodes the deck does not have".to_owned())
 }
 
 /// Where a verification's picture and figures are written, relative to the design's folder.
