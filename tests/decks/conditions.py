@@ -17,7 +17,9 @@ def materials(deck: Deck) -> Iterator[Problem]:
     """Every material is elastic, with sane constants in tables that ascend; explicit steps need densities."""
     explicit = any(step.explicit for step in deck.steps)
     for material in deck.materials.values():
-        if "ELASTIC" not in material.options:
+        if "HYPERELASTIC" in material.options:
+            yield from _hyperelastic(material)
+        elif "ELASTIC" not in material.options:
             yield problem(material.block, "has no *ELASTIC")
         else:
             yield from _elastic(material)
@@ -48,6 +50,20 @@ def _elastic(material: Material) -> Iterator[Problem]:
             elif last is not None and float(value) <= last:
                 yield problem(block, f"the table must ascend, {value} follows {last}", line)
             last = float(value) if numeric(value) else last
+
+
+def _hyperelastic(material: Material) -> Iterator[Problem]:
+    """A neo-Hookean table: C10, D1 and, where it has several rows, a temperature that ascends."""
+    block = material.options["HYPERELASTIC"]
+    rows = list(block.rows())
+    for line, items in rows:
+        if len(items) != (2 if len(rows) == 1 else 3) and len(items) != 3:
+            yield problem(block, f"{len(items)} entries, these are needed: C10, D1, temperature", line)
+        elif not all(map(numeric, items)) or float(items[0]) <= 0 or float(items[1]) <= 0:
+            yield problem(block, f"C10 and D1 must be positive numbers, not {items[0]} and {items[1]}", line)
+    temperatures = [float(items[2]) for _, items in rows if len(items) == 3 and numeric(items[2])]
+    if any(b <= a for a, b in itertools.pairwise(temperatures)):
+        yield problem(block, "the table must ascend")
 
 
 def amplitudes(deck: Deck) -> Iterator[Problem]:

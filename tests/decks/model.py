@@ -158,7 +158,7 @@ class Material:
     @property
     def needs_temperature(self) -> bool:
         """Whether the elasticity varies with temperature, so that nodes need one."""
-        elastic = self.options.get("ELASTIC")
+        elastic = self.options.get("HYPERELASTIC") or self.options.get("ELASTIC")
         return bool(elastic) and not self.fields and sum(1 for _ in elastic.rows()) > 1
 
 
