@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -152,3 +153,22 @@ def test_a_missed_target_error_has_its_own_exit_code(ccx: str, tmp_path: Path) -
     result = run("verify", folder, "--target-error", "0.0001")
     assert result.code == 6 and "--target-error" in result.err
     assert (folder / "verification.json").exists()
+
+
+@pytest.mark.parametrize("model", ["graded_solid", "voxel_solid"])
+def test_the_coupons_decks_run_and_pull_between_the_bounds(
+    ccx: str, examples: dict[str, Path], tmp_path: Path, model: str
+) -> None:
+    """A coupon of half soft and half rigid voxels, stretched by 1 %, between equal stress and equal strain."""
+    deck = examples["coupon_1"] / "calculix" / f"{model}.inp"
+    (tmp_path / "job.inp").write_bytes(deck.read_bytes())
+    done = subprocess.run([ccx, "job"], cwd=tmp_path, capture_output=True, text=True, check=False, timeout=600)
+    assert done.returncode == 0, done.stdout[-2000:]
+    lines = (tmp_path / "job.dat").read_text(encoding="utf-8").splitlines()
+    starts = [i for i, line in enumerate(lines) if "forces" in line and "RP-RIM and" in line and "total" not in line]
+    pull = abs(float(lines[starts[-1] + 2].split()[1]))
+    area_strain = 6 * 2 * 0.01
+    soft, rigid = 3.1, 12.6
+    voigt, reuss = (soft + rigid) / 2, 2 / (1 / soft + 1 / rigid)
+    # Ends that cannot contract stiffen a coupon by a few percent.
+    assert reuss * area_strain < pull < 1.05 * voigt * area_strain, pull
