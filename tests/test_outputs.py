@@ -166,6 +166,17 @@ def test_the_same_design_gives_the_same_bytes_also_from_its_own_result(program: 
     assert hashes[0] != hashes[1]
 
 
+@pytest.mark.parametrize("name", ["mesh", "points", "rectangular_2"])
+def test_a_result_can_be_computed_again_without_the_files_it_came_from(
+    examples: dict[str, Path], tmp_path: Path, name: str
+) -> None:
+    alone = tmp_path / "design.json"
+    alone.write_bytes((examples[name] / "design.json").read_bytes())
+    assert run("design", alone, "-o", tmp_path / "again").code == 0
+    for file in ["design.json", "profile.csv", "slices.csv", "calculix/graded_solid.inp"]:
+        assert (tmp_path / "again" / file).read_bytes() == (examples[name] / file).read_bytes(), file
+
+
 def test_every_text_file_says_where_it_comes_from(examples: dict[str, Path]) -> None:
     folder = examples["hemisphere"]
     sha = read_json(folder / "design.json")["provenance"]["design_sha256"]
