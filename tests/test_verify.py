@@ -39,6 +39,7 @@ def verified(folder: Path, *options: object, limit: float) -> dict:
     assert figures["max_error_percent"] <= limit
     assert figures["rms_error_percent"] <= figures["max_error_percent"]
     assert figures["solver"]["name"] == "CalculiX" and figures["solver"]["version"]
+    assert figures["version"] and figures["seed"] == 1
     assert figures["design_sha256"] == read_json(folder / "design.json")["provenance"]["design_sha256"]
     assert "<svg" in (folder / "verification.svg").read_text(encoding="utf-8")
     return figures

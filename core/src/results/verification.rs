@@ -43,8 +43,9 @@ impl Model {
 /// Contents of `verification.json`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Verification {
-    /// Hash of the design that was verified; a design computed anew has another one.
-    pub design_sha256: String,
+    /// Version, seed and hash of the design that was verified; a design computed anew has another hash.
+    #[serde(flatten)]
+    pub provenance: Provenance,
     /// Which model was solved.
     pub model: Model,
     /// The solver.
@@ -101,7 +102,7 @@ pub fn verify(
     let comparison = compare(design.profile(), &midline)
         .ok_or_else(|| Error::Solver(format!("{}: the solver printed no mid-line", deck.display())))?;
     Ok(Verification {
-        design_sha256: provenance.design_sha256,
+        provenance,
         model,
         solver: SolverRecord { name: "CalculiX".to_owned(), version: run.version },
         max_error_percent: comparison.max_error_percent,
