@@ -131,6 +131,24 @@ def test_a_failing_solver_gives_its_last_lines_and_no_figures(
     assert not (folder / "verification.json").exists()
 
 
+def test_what_an_earlier_run_left_behind_verifies_nothing(program: Path, tmp_path: Path) -> None:
+    folder = small(tmp_path)
+    keep = tmp_path / "kept"
+    keep.mkdir()
+    (keep / "job.sta").write_text(" 1 1 1 4 1.0 1.0 1.0\n", encoding="utf-8")
+    (keep / "job.dat").write_text(" displacements (vx,vy,vz) for set MIDLINE and time  0.1000000E+01\n\n 1 0. 0. 0.\n")
+    result = run("verify", folder, "--keep", keep, "--ccx", stand_in(tmp_path, "exit 0"))
+    assert result.code == 4, (result.out, result.err)
+    assert not (folder / "verification.json").exists()
+
+
+def test_a_solver_may_be_named_by_a_relative_path(program: Path, tmp_path: Path) -> None:
+    folder = small(tmp_path)
+    stand_in(tmp_path, "echo ' *ERROR of the stand-in'; exit 201")
+    result = run("verify", folder, "--ccx", "./fake-ccx", cwd=tmp_path)
+    assert result.code == 4 and "stand-in" in result.err, result.err
+
+
 def test_decks_of_another_design_are_not_verified(program: Path, tmp_path: Path) -> None:
     folder = small(tmp_path)
     deck = folder / "calculix" / "graded_solid.inp"

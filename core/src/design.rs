@@ -9,10 +9,11 @@ use crate::elastica::{ElasticaError, tessellation};
 use crate::error::{Error, Infeasible};
 use crate::input::{DesignInput, TargetInput};
 use crate::micromechanics::{PhaseSet, voigt};
+use crate::modulus_field::{ModulusField, ModulusFieldError};
 use crate::profile::Profile;
 use crate::target::{MeridianCurve, MeridianPoint, Target, resolve};
 use crate::voxel::counts::{Filling, fill};
-use crate::voxel::{Lattice, LatticeError, Slice, SliceTarget, VoxelGrid};
+use crate::voxel::{Lattice, LatticeError, Match, Slice, SliceTarget, VoxelGrid};
 
 /// Stations of the profile, evenly spaced, ends included.
 pub const STATIONS: usize = 1001;
@@ -53,6 +54,7 @@ pub struct Design {
     voxel_path: Option<MorphPath>,
     predicted_error: Option<f64>,
     warnings: Vec<String>,
+    modulus_field: OnceLock<Result<ModulusField, ModulusFieldError>>,
 }
 
 impl Design {
@@ -104,6 +106,7 @@ impl Design {
             voxel_path: None,
             predicted_error: None,
             warnings: Vec::new(),
+            modulus_field: OnceLock::new(),
         };
         design.profile = design.sample_profile()?;
         design.predict();
@@ -211,10 +214,42 @@ impl Design {
         self.predicted_error
     }
 
+    /// The modulus as one expression, fitted when first asked for: it takes longer than the rest of the design.
+    ///
+    /// # Errors
+    /// [`ModulusFieldError`] for a profile that no expression can be fitted to, which a finished design has not.
+    pub fn modulus_field(&self) -> Result<&ModulusField, ModulusFieldError> {
+        let length = self.input.strips.length_mm;
+        let fit = || ModulusField::fit(&self.profile.s, &self.profile.modulus_mpa, length);
+        self.modulus_field.get_or_init(fit).as_ref().map_err(Clone::clone)
+    }
+
     /// What the user should know about this design.
     #[must_use]
     pub fn warnings(&self) -> &[String] {
         &self.warnings
+    }
+
+    /// [`Self::warnings`] and what there is to say about the files that are written: the modulus expression, the decks.
+    #[must_use]
+    pub fn warnings_for_files(&self) -> Vec<String> {
+        let mut warnings = self.warnings.clone();
+        if let Ok(field) = self.modulus_field()
+            && !field.meets_target()
+        {
+            warnings.push(format!(
+                "the closed-form expression of the modulus is up to {:.2} % off, more than {} %; the decks' own fields are exact",
+                field.max_error_percent,
+                crate::modulus_field::TARGET_ERROR_PERCENT
+            ));
+        }
+        if !self.input.decks.write.is_empty() && crate::deck::plan(self).is_empty() {
+            warnings.push(
+                "no deck is written: shell decks are for ABAQUS and for domes only (see decks.write and decks.solvers)"
+                    .to_owned(),
+            );
+        }
+        warnings
     }
 
     /// Mean Poisson's ratio of a spoke, by volume.
@@ -300,6 +335,20 @@ impl Design {
     }
 
     fn collect_warnings(&mut self) {
+        let widest = self.slices.iter().map(|s| (self.grid.size_mm() * 2.0 * s.half_width as f64, s.s_mm)).fold(
+            (1.0, 0.0),
+            |worst: (f64, f64), (voxels, s)| {
+                let excess = voxels / self.width_and_modulus(s).0;
+                if excess > worst.0 { (excess, s) } else { worst }
+            },
+        );
+        if widest.0 > 1.2 {
+            self.warnings.push(format!(
+                "whole voxels are up to {:.1} times as wide as the spoke (at s = {:.2} mm), so neighbouring spokes overlap; \
+                 use smaller voxels or fewer spokes",
+                widest.0, widest.1
+            ));
+        }
         let clamped = self.slices.iter().filter(|s| s.clamped).count();
         if clamped > 0 {
             self.warnings.push(format!(
@@ -318,8 +367,9 @@ impl Design {
         if let Some(error) = self.predicted_error.filter(|e| *e > 0.01) {
             self.warnings.push(format!(
                 "the voxelised strip is predicted to miss the target by {:.2} % of its length; smaller voxels, another \
-                 pattern or match = \"stiffness\" bring it closer",
-                100.0 * error
+                 pattern{} bring it closer",
+                100.0 * error,
+                if self.input.voxels.matching == Match::Stiffness { "" } else { " or match = \"stiffness\"" }
             ));
         }
         let layers = self.grid.layers();
@@ -496,18 +546,17 @@ fn outline(input: &DesignInput, lattice: &Lattice, body: &Body, limits: Limits) 
     Ok(slices)
 }
 
-/// The largest modulus, MPa: what the phases reach, such that no slice of whole voxels needs more, unless the softest
-/// part would then need less than the softest phase.
+/// The largest modulus, MPa: the phases' default, reduced so that no slice of whole voxels needs more than it, or raised
+/// where the softest slice would else need less than the softest phase and the stiffest phase allows it.
 fn scale(input: &DesignInput, phases: &PhaseSet, lattice: &Lattice, outline: &[Outline], contrast: f64) -> f64 {
     if let TargetInput::Strip { rigid_fraction: Some(rigid), .. } = input.target {
         return uniform_modulus(phases, rigid, input.materials.intermediate_fraction);
     }
     let peak = phases.default_peak(contrast);
-    let excess = outline
-        .iter()
-        .map(|o| o.ratio * o.width_mm / (2.0 * o.half_width as f64 * lattice.size_mm))
-        .fold(1.0, f64::max);
-    (peak / excess).max((phases.softest() * contrast).min(peak))
+    let needs = || outline.iter().map(|o| o.ratio * o.width_mm / (2.0 * o.half_width as f64 * lattice.size_mm));
+    let (most, least) = (needs().fold(1.0, f64::max), needs().fold(1.0 / contrast, f64::min));
+    let (default, highest) = (peak / most, phases.stiffest() / most);
+    (phases.softest() / least).clamp(default, highest.max(default))
 }
 
 /// Voigt modulus of a uniform strip with a given fraction of the stiffest phase.

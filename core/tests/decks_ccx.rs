@@ -119,6 +119,7 @@ fn between(value: f64, beam: f64, plane_strain: f64) {
 }
 
 #[test]
+#[ignore = "needs ccx: scripts/test runs it where there is one"]
 fn the_graded_hemisphere_takes_its_shape_with_the_designed_reactions() {
     let design = hemisphere(100.0, "free", 1.0);
     let Some(run) = run(&design, DeckKind::GradedSolid) else { return };
@@ -135,6 +136,7 @@ fn the_graded_hemisphere_takes_its_shape_with_the_designed_reactions() {
 }
 
 #[test]
+#[ignore = "needs ccx: scripts/test runs it where there is one"]
 fn the_voxelised_hemisphere_stays_near_its_target() {
     let design = hemisphere(40.0, "free", 1.0);
     let Some(run) = run(&design, DeckKind::VoxelSolid) else { return };

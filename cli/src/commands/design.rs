@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use voxelastica_core::input::TargetInput;
 use voxelastica_core::output::write::{WriteOptions, Written, estimated_bytes, write_design};
 use voxelastica_core::{Design, DesignInput, Error, Limits};
 
@@ -23,7 +24,7 @@ pub fn run(options: &DesignOptions, console: &Console) -> Result<u8, Error> {
     bar.finish_and_clear();
     let written = written?;
     report(&design, &written, console);
-    for warning in design.warnings() {
+    for warning in design.warnings_for_files() {
         console.warn(warning);
     }
     console.say(format!("written   {}", folder.display()));
@@ -38,20 +39,57 @@ fn report(design: &Design, written: &Written, console: &Console) {
     let forces = &summary.thrust;
     console.say(format!("design    {} ({})", design.input().name, &written.provenance.design_sha256[..12]));
     console.say(format!("contrast  {:.3} of {:.3} that the phases reach", summary.contrast, summary.contrast_reach));
-    console.say(format!(
-        "forces    H = {:.4} to {:.4} N a spoke, V = {:.4} to {:.4} N on the hub (beam to plane strain)",
-        forces.per_spoke.beam.horizontal_n,
-        forces.per_spoke.plane_strain.horizontal_n,
-        forces.total.beam.vertical_n,
-        forces.total.plane_strain.vertical_n
-    ));
-    console.detail(format!(
-        "moments   {:.3} N mm at the rim, {:.3} N mm at the hub, a spoke in beam bending",
-        forces.per_spoke.beam.rim_moment_nmm, forces.per_spoke.beam.hub_moment_nmm
-    ));
+    if let Some(target) = design.target() {
+        if let TargetInput::Mesh { revolution: Some(found), .. } = &design.input().target {
+            console.say(format!(
+                "mesh      {} % of the rim radius (rms) off a surface of revolution",
+                figures(found.rms_percent)
+            ));
+        }
+        if let Some(fit) = &target.fit {
+            console.say(format!(
+                "meridian  smooth within {} mm of its points (rms {} mm), 1 unit = {} mm",
+                figures(fit.residual_max_mm),
+                figures(fit.residual_rms_mm),
+                figures(fit.scale)
+            ));
+        }
+        console.say(format!(
+            "forces    H = {} to {} N a spoke, V = {} to {} N on the hub (beam to plane strain)",
+            figures(forces.per_spoke.beam.horizontal_n),
+            figures(forces.per_spoke.plane_strain.horizontal_n),
+            figures(forces.total.beam.vertical_n),
+            figures(forces.total.plane_strain.vertical_n)
+        ));
+        console.detail(format!(
+            "moments   {} N mm at the rim, {} N mm at the hub, a spoke in beam bending",
+            figures(forces.per_spoke.beam.rim_moment_nmm),
+            figures(forces.per_spoke.beam.hub_moment_nmm)
+        ));
+    } else if design.guide().is_some() {
+        console.say(format!(
+            "forces    H = {} to {} N, {} N mm at the ends (beam to plane strain, beam)",
+            figures(forces.per_spoke.beam.horizontal_n),
+            figures(forces.per_spoke.plane_strain.horizontal_n),
+            figures(forces.per_spoke.beam.rim_moment_nmm)
+        ));
+    }
     let voxels: Vec<String> = summary.voxels.iter().map(|(name, count)| format!("{count} {name}")).collect();
-    console.say(format!("voxels    {} a spoke: {}", summary.voxels_per_spoke, voxels.join(", ")));
+    console.say(format!("voxels    {} a strip: {}", summary.voxels_per_spoke, voxels.join(", ")));
     if let Some(error) = summary.predicted_error_percent {
-        console.say(format!("predicted {error:.3} % of the length off the target"));
+        console.say(format!("predicted {} % of the length off the target", figures(error)));
+    }
+}
+
+/// A number with four significant digits.
+fn figures(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return "0".to_owned();
+    }
+    let magnitude = value.abs().log10().floor() as i32;
+    if (-4..6).contains(&magnitude) {
+        format!("{value:.*}", usize::try_from(3 - magnitude).unwrap_or(0))
+    } else {
+        format!("{value:.3e}")
     }
 }

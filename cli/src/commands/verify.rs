@@ -49,7 +49,7 @@ pub fn run(options: &VerifyOptions, console: &Console) -> Result<u8, Error> {
         verification.max_error_percent, verification.rms_error_percent, verification.max_shape_error_percent
     ));
     if let Some(predicted) = verification.predicted_error_percent {
-        console.detail(format!("predicted {predicted:.3} % for the voxelised strip"));
+        console.detail(format!("predicted {predicted:.3} % by the elastica"));
     }
     console.say(format!("written   {}", options.folder.join("verification.json").display()));
     match options.target_error {
@@ -96,7 +96,11 @@ fn write(design: &Design, folder: &Path, verification: &Verification) -> Result<
     let picture = VerificationPicture {
         name: design.input().name.clone(),
         target: points(&profile.x, &profile.z),
-        prediction: design.voxel_path().map(|p| points(&p.final_shape().x, &p.final_shape().z)),
+        prediction: match verification.model {
+            Model::Voxel => design.voxel_path(),
+            Model::Graded => design.graded_path().ok().flatten(),
+        }
+        .map(|p| points(&p.final_shape().x, &p.final_shape().z)),
         solver: verification.midline_mm.iter().map(|[_, x, z]| [*x, *z]).collect(),
         solver_name: format!("{} {}", verification.solver.name, verification.solver.version),
         max_error_percent: verification.max_error_percent,

@@ -44,6 +44,6 @@ impl Deck for GradedShell<'_> {
         )];
         paragraphs.extend(model.paragraphs());
         heading(sink, &model.design.input().name, "graded shell", provenance, &paragraphs)?;
-        model.write(sink, |_| Ok(()))
+        model.write(sink, |sink| model.phase_sets(sink))
     }
 }

@@ -104,9 +104,9 @@ impl<'a> ShellModel<'a> {
              RF3 = -V, RM2 = M(0), RP-HUB-i has RF1 = -H, RM2 = -M(L), and RP-HUB, which the hub ends follow, has RF3 = \
              V times the number of spokes."
                 .to_owned(),
-            "Stresses and strains are in the spoke's axes too: 1 along, 2 across. PHASE-<NAME> sets do not apply: the \
-             phases are mixed in every element."
+            "Stresses and strains are in the spoke's axes too: 1 along, 2 across."
                 .to_owned(),
+            "PHASE-<NAME>: elements whose mixture contains the phase.".to_owned(),
         ]
     }
 
@@ -134,6 +134,28 @@ impl<'a> ShellModel<'a> {
         }
         self.properties(sink)?;
         self.step(sink)
+    }
+
+    /// The element sets of the phases: slices whose mean modulus mixes some of a phase in.
+    pub(super) fn phase_sets(&self, sink: &mut Sink<'_>) -> Result<(), DeckError> {
+        let phases = self.design.phases();
+        for (k, phase) in phases.phases().iter().enumerate() {
+            let mean = |ends: &[f64]| 0.5 * (ends[0] + ends[1]);
+            let contains = |(_, ends): &(usize, &[f64])| phases.fractions(mean(ends)).values[k] > 1e-9;
+            let slices: Vec<usize> = self.moduli.windows(2).enumerate().filter(contains).map(|(i, _)| i).collect();
+            if slices.is_empty() {
+                continue;
+            }
+            sink.line(&format!("*ELSET, ELSET=PHASE-{}", phase.label()))?;
+            let spokes = if self.layout.has_parts() { 1 } else { self.count() as u64 };
+            let of_slice = |slice: &usize| self.sheet.first_element(*slice)..self.sheet.first_element(*slice + 1);
+            let elements = self.sheet.elements();
+            sink.list((0..spokes).flat_map(|spoke| {
+                let slices = &slices;
+                slices.iter().flat_map(of_slice).map(move |e| spoke * elements + e)
+            }))?;
+        }
+        Ok(())
     }
 
     /// The element set of a slice, in the part or in all spokes.

@@ -54,6 +54,9 @@ impl Deck for VoxelShell<'_> {
         paragraphs.extend(model.paragraphs());
         paragraphs.push("SLICE-<i>: elements of a slice, from 1 at the rim.".to_owned());
         heading(sink, &model.design.input().name, "voxel shell", provenance, &paragraphs)?;
-        model.write(sink, |sink| (0..model.sheet.slices()).try_for_each(|slice| model.slice_set(sink, slice)))
+        model.write(sink, |sink| {
+            model.phase_sets(sink)?;
+            (0..model.sheet.slices()).try_for_each(|slice| model.slice_set(sink, slice))
+        })
     }
 }

@@ -66,6 +66,9 @@ impl DesignInput {
             error.in_file(shown)
         };
         input.validate().map_err(located)?;
+        if let Some(thrust) = &mut input.thrust {
+            thrust.choice = Some(thrust.resolved_choice());
+        }
         input.load_target(folder).map_err(located)?;
         Ok(input)
     }

@@ -89,6 +89,15 @@ pub enum ModulusFamily {
         /// `E`, MPa.
         modulus_mpa: f64,
     },
+    /// `E = E_m + b |X - m|`: two straight lines that meet at a kink, as in strips graded from both ends to the middle.
+    Kink {
+        /// Position `m` of the kink, mm.
+        middle_mm: f64,
+        /// Modulus `E_m` there, MPa.
+        middle_mpa: f64,
+        /// Slope `b` away from it, MPa/mm.
+        slope_mpa_mm: f64,
+    },
     /// `E = sum_k A_k exp(-((X - b_k) / c_k)^2)`.
     Gaussians(Vec<Gaussian>),
     /// `E = E_0 exp(sum_k c_k u^k)`, `u = X / h - 1`.
@@ -99,6 +108,7 @@ impl ModulusFamily {
     fn terms(&self) -> usize {
         match self {
             Self::Constant { .. } => 1,
+            Self::Kink { .. } => 2,
             Self::Gaussians(terms) => terms.len(),
             Self::ExponentialPolynomial(polynomial) => polynomial.coefficients.len() + 1,
         }
@@ -107,6 +117,12 @@ impl ModulusFamily {
     fn expression(&self) -> String {
         match self {
             Self::Constant { modulus_mpa } => expression::literal(*modulus_mpa),
+            // The root of a square: absolute values under a name are not to be had in every expression engine.
+            Self::Kink { middle_mm, middle_mpa, slope_mpa_mm } => {
+                let [m, e, b] = [*middle_mm, *middle_mpa, slope_mpa_mm.abs()].map(expression::literal);
+                let sign = if *slope_mpa_mm < 0.0 { '-' } else { '+' };
+                format!("{e}{sign}{b}*pow(pow({VARIABLE}-{m},2.0),0.5)")
+            }
             Self::Gaussians(terms) => gaussians::expression(terms, VARIABLE),
             Self::ExponentialPolynomial(polynomial) => polynomial.expression(VARIABLE),
         }
@@ -115,6 +131,7 @@ impl ModulusFamily {
     fn evaluate(&self, x_mm: f64) -> f64 {
         match self {
             Self::Constant { modulus_mpa } => *modulus_mpa,
+            Self::Kink { middle_mm, middle_mpa, slope_mpa_mm } => middle_mpa + slope_mpa_mm * (x_mm - middle_mm).abs(),
             Self::Gaussians(terms) => gaussians::evaluate(terms, x_mm),
             Self::ExponentialPolynomial(polynomial) => polynomial.evaluate(x_mm),
         }
@@ -163,6 +180,9 @@ fn best_family(samples: &Samples, target: f64) -> (ModulusFamily, f64) {
     if error <= target {
         return best;
     }
+    if let Some((kink, error)) = kink(samples, target) {
+        return (kink, error);
+    }
     // The polynomial is quick, and tells how many Gaussians are worth trying.
     if let Some((polynomial, error)) = exponential_polynomial::fit(samples, target, MAX_DEGREE) {
         best = (ModulusFamily::ExponentialPolynomial(polynomial), error);
@@ -190,6 +210,18 @@ fn constant(samples: &Samples, target: f64) -> (f64, f64) {
         .map(|e| (e, error(e)))
         .find(|(_, error)| *error <= allowed)
         .unwrap_or((exact, error(exact)))
+}
+
+/// Two straight lines that meet in the middle, where they meet the target.
+fn kink(samples: &Samples, target: f64) -> Option<(ModulusFamily, f64)> {
+    let last = samples.modulus.len() - 1;
+    let (first, middle) = (samples.modulus.first()?, samples.modulus.get(last / 2)?);
+    let half = 0.5 * samples.length;
+    let rounded = |value: f64| expression::round_significant(value, 10);
+    let (middle_mm, middle_mpa, slope) = (rounded(half), rounded(*middle), rounded((first - middle) / half));
+    let error = samples.largest_error(|x| middle_mpa + slope * (x - middle_mm).abs());
+    let family = ModulusFamily::Kink { middle_mm, middle_mpa, slope_mpa_mm: slope };
+    (last.is_multiple_of(2) && error <= target).then_some((family, error))
 }
 
 /// How far rounding may push a largest relative error: a tenth of it, but not past a target that it meets.

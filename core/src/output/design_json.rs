@@ -72,7 +72,7 @@ pub fn document(
         },
         "morph_path": morph_path(design),
         "predicted_midline_mm": predicted_midline(design),
-        "warnings": design.warnings(),
+        "warnings": design.warnings_for_files(),
         "files": files,
     }))
 }

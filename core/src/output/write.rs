@@ -63,9 +63,7 @@ pub fn write_design(
     let provenance = Provenance::of(design.input());
     let summary = Summary::of(design);
     let profile = design.profile();
-    let field =
-        crate::modulus_field::ModulusField::fit(&profile.s, &profile.modulus_mpa, design.input().strips.length_mm)
-            .map_err(|e| Error::Internal(format!("the modulus field: {e}")))?;
+    let field = design.modulus_field().map_err(|e| Error::Internal(format!("the modulus field: {e}")))?;
     let decks = deck::plan(design);
     require_room(folder, &decks, options)?;
 
@@ -85,10 +83,10 @@ pub fn write_design(
     }
     staging.write("profile.csv", |out| tables::write_profile(design, out))?;
     staging.write("slices.csv", |out| tables::write_slices(design, out))?;
-    let page = report::html(design, &summary, Some(&field), &provenance, &files)
+    let page = report::html(design, &summary, Some(field), &provenance, &files)
         .map_err(|e| Error::Internal(format!("the report: {e}")))?;
     staging.write_text("report.html", &page)?;
-    let document = design_json::document(design, &summary, Some(&field), &provenance, &names)?;
+    let document = design_json::document(design, &summary, Some(field), &provenance, &names)?;
     let text = json::to_text(&document).map_err(|e| Error::Internal(format!("design.json: {e}")))?;
     staging.write("design.json", |out| out.write_all(text.as_bytes()))?;
     if !progress(before + OTHER_FILES) {

@@ -98,7 +98,7 @@ fn description(input: &DesignInput) -> String {
 }
 
 fn warnings(design: &Design) -> String {
-    let list = design.warnings();
+    let list = design.warnings_for_files();
     if list.is_empty() {
         return "<div class=\"warnings none\"><p>Warnings: none</p></div>\n".to_owned();
     }

@@ -56,7 +56,7 @@ pub struct Verification {
     pub rms_error_percent: f64,
     /// Largest distance from the nearest point of the target.
     pub max_shape_error_percent: f64,
-    /// Largest distance that the forward model predicts for the voxelised strip, percent of the length.
+    /// Largest distance that the forward model predicts for the strip that was solved, percent of the length.
     pub predicted_error_percent: Option<f64>,
     /// Wall time of the solver, s.
     pub seconds: f64,
@@ -108,12 +108,23 @@ pub fn verify(
         max_error_percent: comparison.max_error_percent,
         rms_error_percent: comparison.rms_error_percent,
         max_shape_error_percent: comparison.max_shape_error_percent,
-        predicted_error_percent: design.predicted_error().map(|e| 100.0 * e),
+        predicted_error_percent: predicted(design, model).map(|e| 100.0 * e),
         seconds: run.seconds,
         increments: run.increments,
         iterations: run.iterations,
         midline_mm: midline,
     })
+}
+
+/// What the forward model predicts for a model's strip, as a share of the length.
+fn predicted(design: &Design, model: Model) -> Option<f64> {
+    match model {
+        Model::Voxel => design.predicted_error(),
+        Model::Graded => {
+            let shape = design.graded_path().ok()??.final_shape();
+            Some(design.profile().largest_distance(shape) / design.input().strips.length_mm)
+        }
+    }
 }
 
 /// Refuses a deck that is missing or was written for another design.

@@ -65,13 +65,21 @@ impl Ccx {
     /// log; [`Error::Cancelled`].
     pub fn run(&self, deck: &Path, folder: &Path, progress: &dyn Fn(Status) -> bool) -> Result<Run, Error> {
         let version = self.version()?;
+        // What an earlier run left behind must not pass for this one's result.
+        for ending in ["inp", "log", "sta", "dat", "frd", "cvg", "12d"] {
+            let stale = folder.join(format!("job.{ending}"));
+            match fs::remove_file(&stale) {
+                Err(error) if error.kind() != ErrorKind::NotFound => return Err(Error::output(stale, &error)),
+                _ => {}
+            }
+        }
         let job = folder.join("job.inp");
         fs::copy(deck, &job).map_err(|e| Error::Solver(format!("{} cannot be copied: {e}", deck.display())))?;
         let log_path = folder.join("job.log");
         let log = File::create(&log_path).map_err(|e| Error::output(&log_path, &e))?;
         let errors = log.try_clone().map_err(|e| Error::output(&log_path, &e))?;
         let start = Instant::now();
-        let child = Command::new(&self.executable)
+        let child = Command::new(self.program())
             .arg("job")
             .current_dir(folder)
             .env("OMP_NUM_THREADS", self.threads.to_string())
@@ -120,13 +128,22 @@ impl Ccx {
         })
     }
 
+    /// The program to start: a bare name is looked up on `PATH`, a path holds wherever the solver works.
+    fn program(&self) -> PathBuf {
+        if self.executable.components().count() > 1 {
+            std::path::absolute(&self.executable).unwrap_or_else(|_| self.executable.clone())
+        } else {
+            self.executable.clone()
+        }
+    }
+
     /// The version the solver reports.
     ///
     /// # Errors
     /// [`Error::Solver`] where the program is missing or cannot be started.
     pub fn version(&self) -> Result<String, Error> {
         let output =
-            Command::new(&self.executable).arg("-v").stdin(Stdio::null()).output().map_err(|e| self.not_started(&e))?;
+            Command::new(self.program()).arg("-v").stdin(Stdio::null()).output().map_err(|e| self.not_started(&e))?;
         let text = String::from_utf8_lossy(&output.stdout).into_owned();
         let version = text.split_whitespace().find(|word| word.starts_with(|c: char| c.is_ascii_digit()));
         match version {
