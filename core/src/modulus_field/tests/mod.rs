@@ -210,3 +210,17 @@ proptest! {
         prop_assert!(checked(&s, &e, 100.0).max_error_percent.is_finite());
     }
 }
+
+/// Strips graded linearly from both ends to the middle: a kink that smooth families cannot follow.
+#[test]
+fn a_kink_in_the_middle_is_two_straight_lines() {
+    let s: Vec<f64> = (0..=1000).map(|i| 0.04 * f64::from(i)).collect();
+    for (ends, middle) in [(12.6, 6.3), (6.3, 12.6)] {
+        let modulus: Vec<f64> = s.iter().map(|s| middle + (ends - middle) * (s / 20.0 - 1.0).abs()).collect();
+        let field = ModulusField::fit(&s, &modulus, 40.0).unwrap();
+        assert_eq!(field.terms, 2, "{}", field.expression);
+        assert!(field.max_error_percent < 0.05, "{field:?}");
+        assert!(field.expression.contains("pow(pow(X-"), "{field:?}");
+        assert!((field.evaluate(10.0) - 0.5 * (ends + middle)).abs() < 1e-9);
+    }
+}
