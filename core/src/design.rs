@@ -10,8 +10,9 @@ use crate::error::{Error, Infeasible};
 use crate::input::{DesignInput, TargetInput};
 use crate::micromechanics::{PhaseSet, voigt};
 use crate::profile::Profile;
+use crate::progress::{self, Cancelled};
 use crate::target::{MeridianCurve, MeridianPoint, Target, resolve};
-use crate::voxel::counts::{Filling, fill};
+use crate::voxel::counts::{Filling, fill_unless};
 use crate::voxel::{Lattice, LatticeError, Slice, SliceTarget, VoxelGrid};
 
 /// Stations of the profile, evenly spaced, ends included.
@@ -63,13 +64,23 @@ impl Design {
     /// [`Error::Input`] for a target or a voxel size that cannot be used, [`Error::Infeasible`] where mechanics or the
     /// phases rule the design out.
     pub fn compute(input: &DesignInput, limits: Limits) -> Result<Self, Error> {
+        Self::compute_unless(input, limits, &progress::never)
+    }
+
+    /// Computes a design unless it is cancelled: `cancelled` is asked between the steps and before every slice of voxels.
+    ///
+    /// # Errors
+    /// Those of [`Design::compute`], and [`Error::Cancelled`].
+    pub fn compute_unless(input: &DesignInput, limits: Limits, cancelled: Cancelled<'_>) -> Result<Self, Error> {
         input.validate()?;
         let phases = input.phase_set()?;
         let size = input.voxels.size_mm;
         let lattice = Lattice::new(input.strips.length_mm, input.strips.thickness_mm, size)
             .map_err(|error| Error::lattice(size, &error))?;
 
+        let go_on = || if cancelled() { Err(Error::Cancelled) } else { Ok(()) };
         let target = resolve(input)?;
+        go_on()?;
         let body = solve_body(input, target.as_ref())?;
         let contrast = body.contrast();
         check_reach(input, &phases, &body, target.as_ref())?;
@@ -86,7 +97,7 @@ impl Design {
             seed: input.voxels.seed,
             matching: input.voxels.matching,
         };
-        let (grid, slices) = fill(&lattice, &targets, &filling);
+        let (grid, slices) = fill_unless(&lattice, &targets, &filling, cancelled).ok_or(Error::Cancelled)?;
 
         let guide = guide(input, target.as_ref());
         let mut design = Self {
@@ -107,6 +118,7 @@ impl Design {
             warnings: Vec::new(),
         };
         design.profile = design.sample_profile()?;
+        go_on()?;
         design.predict();
         design.collect_warnings();
         Ok(design)
