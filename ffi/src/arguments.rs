@@ -77,10 +77,7 @@ pub(crate) unsafe fn buffer<'a, T>(
     if data.is_null() && wanted > 0 {
         return Err(null(name));
     }
-    if length != wanted {
-        let problem = format!("this buffer must hold {wanted} values");
-        return Err(Failure::argument(Status::WrongLength, name, length, &problem));
-    }
+    exactly(name, length, wanted)?;
     if wanted == 0 {
         return Ok(&mut []);
     }
@@ -89,6 +86,15 @@ pub(crate) unsafe fn buffer<'a, T>(
     }
     // SAFETY: not null, aligned, writable for `length` values by this function's contract.
     Ok(unsafe { std::slice::from_raw_parts_mut(data, length) })
+}
+
+/// Checks the length of a buffer.
+pub(crate) fn exactly(name: &str, length: usize, wanted: usize) -> Result<(), Failure> {
+    if length == wanted {
+        return Ok(());
+    }
+    let problem = format!("this buffer must hold {wanted} values");
+    Err(Failure::argument(Status::WrongLength, name, length, &problem))
 }
 
 /// A whole number within limits, such as quads along a spoke.

@@ -2,7 +2,7 @@
 
 use std::ffi::{CString, c_char, c_void};
 use std::ptr;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use voxelastica_core::modulus_field::ModulusField;
 use voxelastica_core::output::{Provenance, Summary, design_json};
@@ -20,7 +20,7 @@ use crate::text::Text;
 
 /// A finished design. Immutable: any number of threads may read it at once.
 pub struct DesignObject {
-    pub(crate) design: Design,
+    pub(crate) design: Arc<Design>,
     pub(crate) outline: OnceLock<Vec<[f64; 2]>>,
     warnings: Vec<CString>,
 }
@@ -32,7 +32,7 @@ impl Handle for DesignObject {
 impl DesignObject {
     fn new(design: Design) -> Self {
         let warnings = design.warnings().iter().map(|w| c_text(w)).collect();
-        Self { design, outline: OnceLock::new(), warnings }
+        Self { design: Arc::new(design), outline: OnceLock::new(), warnings }
     }
 }
 

@@ -2,9 +2,11 @@
 
 use std::sync::Arc;
 
+use voxelastica_core::Design;
 use voxelastica_core::flower::{Coordinate, Flower};
+use voxelastica_core::surface::Strip;
 
-use crate::arguments::{Out, buffer, fraction};
+use crate::arguments::{Out, buffer, exactly, fraction};
 use crate::array::{ArrayF64, ArrayU32};
 use crate::boundary::{enter, value_or};
 use crate::design::DesignObject;
@@ -14,13 +16,63 @@ use crate::mesh::{check_grid, strip};
 use crate::registry::{Handle, find, keep, release};
 use crate::status::Status;
 
-/// The surfaces of all spokes, prepared so that a new fraction of the morph fills a caller's buffers in about a
-/// millisecond. Immutable; several threads may fill buffers of their own at once.
-pub struct FlowerObject {
-    design: Arc<DesignObject>,
+/// All spokes of a design, with what does not change.
+pub struct PreparedFlower {
+    design: Arc<Design>,
     flower: Flower,
     quads: Vec<[u32; 4]>,
 }
+
+impl PreparedFlower {
+    /// Prepares `along` by `across` quads a spoke.
+    ///
+    /// # Errors
+    /// [`Failure`] for more quads than fit.
+    pub fn new(design: Arc<Design>, strip: Strip, along: usize, across: usize) -> Result<Self, Failure> {
+        check_grid(design.input().count(), along, across)?;
+        let flower = Flower::new(&design, strip, along, across);
+        let quads = flower.quads();
+        Ok(Self { design, flower, quads })
+    }
+
+    /// Number of vertices.
+    #[must_use]
+    pub fn vertices(&self) -> usize {
+        self.flower.vertices()
+    }
+
+    /// Four vertices a quad.
+    #[must_use]
+    pub fn quads(&self) -> &[[u32; 4]] {
+        &self.quads
+    }
+
+    /// Modulus at the vertices, MPa.
+    #[must_use]
+    pub fn modulus_mpa(&self) -> &[f64] {
+        self.flower.modulus_mpa()
+    }
+
+    /// Fills vertices and, unless they have no room, normals at a fraction of the morph.
+    ///
+    /// # Errors
+    /// [`Failure`] for wrong lengths, a fraction out of range, and where the path could not be followed.
+    pub fn fill<T: Coordinate>(&self, at: f64, positions: &mut [T], normals: &mut [T]) -> Result<(), Failure> {
+        let wanted = 3 * self.vertices();
+        exactly("positions", positions.len(), wanted)?;
+        let normals = if normals.is_empty() {
+            None
+        } else {
+            exactly("normals", normals.len(), wanted)?;
+            Some(normals.as_chunks_mut::<3>().0)
+        };
+        Ok(self.flower.fill(&self.design, fraction(at)?, positions.as_chunks_mut::<3>().0, normals)?)
+    }
+}
+
+/// The surfaces of all spokes, prepared so that a new fraction of the morph fills a caller's buffers in about a
+/// millisecond. Immutable; several threads may fill buffers of their own at once.
+pub struct FlowerObject(PreparedFlower);
 
 impl Handle for FlowerObject {
     const NAME: &'static str = "flower";
@@ -45,10 +97,8 @@ pub unsafe extern "C" fn voxelastica_flower_new(
     unsafe {
         enter(error, || {
             let (design, out) = (find(design)?, Out::new("flower", flower)?);
-            check_grid(design.design.input().count(), along, across)?;
-            let flower = Flower::new(&design.design, self::strip(strip)?, along, across);
-            let quads = flower.quads();
-            out.set(keep(FlowerObject { design, flower, quads }));
+            let flower = PreparedFlower::new(Arc::clone(&design.design), self::strip(strip)?, along, across)?;
+            out.set(keep(FlowerObject(flower)));
             Ok(())
         })
     }
@@ -57,7 +107,7 @@ pub unsafe extern "C" fn voxelastica_flower_new(
 /// Number of vertices of all spokes; 0 if this is not a flower.
 #[unsafe(no_mangle)]
 pub extern "C" fn voxelastica_flower_vertices(flower: *const FlowerObject) -> usize {
-    value_or(0, || Ok(find(flower)?.flower.vertices()))
+    value_or(0, || Ok(find(flower)?.0.vertices()))
 }
 
 /// Lends the quads of all spokes, four vertices a row, until the flower is freed. They do not change with the morph.
@@ -74,7 +124,7 @@ pub unsafe extern "C" fn voxelastica_flower_quads(
     unsafe {
         enter(error, || {
             let (flower, out) = (find(flower)?, Out::new("array", array)?);
-            out.set(ArrayU32::table(&flower.quads));
+            out.set(ArrayU32::table(flower.0.quads()));
             Ok(())
         })
     }
@@ -94,7 +144,7 @@ pub unsafe extern "C" fn voxelastica_flower_modulus(
     unsafe {
         enter(error, || {
             let (flower, out) = (find(flower)?, Out::new("array", array)?);
-            out.set(ArrayF64::column(flower.flower.modulus_mpa()));
+            out.set(ArrayF64::column(flower.0.modulus_mpa()));
             Ok(())
         })
     }
@@ -111,21 +161,19 @@ unsafe fn fill<T: Coordinate>(
     normals: (*mut T, usize),
 ) -> Result<(), Failure> {
     let flower = find(flower)?;
-    let wanted = 3 * flower.flower.vertices();
-    let at = fraction(at)?;
-    // SAFETY: by this function's contract.
+    let wanted = 3 * flower.0.vertices();
+    // SAFETY: by this function's contract; the two do not overlap.
     let (positions, normals) = unsafe {
-        let positions = buffer("positions", positions.0, positions.1, wanted)?;
+        let places = buffer("positions", positions.0, positions.1, wanted)?;
         if normals.0.is_null() && normals.1 == 0 {
-            (positions, None)
+            (places, <&mut [T]>::default())
+        } else if positions.0 == normals.0 {
+            return Err(Failure::range("normals", "", "another buffer than positions"));
         } else {
-            if positions.as_mut_ptr() == normals.0 {
-                return Err(Failure::range("normals", "", "another buffer than positions"));
-            }
-            (positions, Some(buffer("normals", normals.0, normals.1, wanted)?.as_chunks_mut::<3>().0))
+            (places, buffer("normals", normals.0, normals.1, wanted)?)
         }
     };
-    Ok(flower.flower.fill(&flower.design.design, at, positions.as_chunks_mut::<3>().0, normals)?)
+    flower.0.fill(at, positions, normals)
 }
 
 /// Writes the vertices at a fraction of the morph, `x, y, z` each in mm, into `positions`, and unit normals into `normals`

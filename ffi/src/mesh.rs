@@ -65,6 +65,14 @@ pub fn spoke_surface(
     Ok(if spoke == 0 { surface } else { surface.turned(spoke, spokes) })
 }
 
+/// Corners of the hub at a fraction of the morph.
+///
+/// # Errors
+/// [`Failure`] for a fraction out of range, and where the path could not be followed.
+pub fn hub(design: &Design, strip: Strip, at: f64) -> Result<Vec<[f64; 3]>, Failure> {
+    Ok(design.hub_polygon(strip, arguments::fraction(at)?)?)
+}
+
 /// The mid-surface of one spoke as a grid of quads, `along + 1` by `across + 1` vertices, rim first, from one edge to the
 /// other. Immutable.
 ///
@@ -205,7 +213,7 @@ pub unsafe extern "C" fn voxelastica_design_hub(
     unsafe {
         enter(error, || {
             let design = find(design)?;
-            let polygon = design.design.hub_polygon(self::strip(strip)?, arguments::fraction(fraction)?)?;
+            let polygon = hub(&design.design, self::strip(strip)?, fraction)?;
             buffer("corners", corners, length, 3 * polygon.len())?.copy_from_slice(polygon.as_flattened());
             Ok(())
         })
