@@ -2,19 +2,27 @@
 
 use std::path::Path;
 
-#[test]
-fn the_headers_are_up_to_date() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let bridge: proc_macro2::TokenStream =
-        std::fs::read_to_string(root.join("src/bridge.rs")).unwrap().parse().unwrap();
-    let made = cxx_gen::generate_header_and_cc(bridge, &cxx_gen::Opt::default()).unwrap().header;
-    let committed = root.join("include/voxelastica/bridge.h");
+fn hold(made: &[u8], name: &str) {
+    let committed = Path::new(env!("CARGO_MANIFEST_DIR")).join("include/voxelastica").join(name);
     if std::env::var_os("VOXELASTICA_UPDATE").is_some() {
-        std::fs::write(&committed, &made).unwrap();
+        std::fs::write(&committed, made).unwrap();
     }
     let kept = std::fs::read(&committed).unwrap_or_default();
     assert!(
         made == kept,
-        "bridge.h differs from the sources; run VOXELASTICA_UPDATE=1 cargo test -p voxelastica-cxx --test header"
+        "{name} differs from the sources; run VOXELASTICA_UPDATE=1 cargo test -p voxelastica-cxx --test header"
     );
+}
+
+#[test]
+fn the_bridges_header_is_up_to_date() {
+    let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/bridge.rs");
+    let bridge: proc_macro2::TokenStream = std::fs::read_to_string(sources).unwrap().parse().unwrap();
+    let made = cxx_gen::generate_header_and_cc(bridge, &cxx_gen::Opt::default()).unwrap().header;
+    hold(&made, "bridge.h");
+}
+
+#[test]
+fn the_header_of_cxx_is_that_of_the_version_in_use() {
+    hold(cxx_gen::HEADER.as_bytes(), "cxx.h");
 }

@@ -18,6 +18,8 @@
 #include <utility>
 #include <vector>
 
+#include "voxelastica/cxx.h"
+//
 #include "voxelastica/bridge.h"
 #include "voxelastica/progress.hpp"
 
