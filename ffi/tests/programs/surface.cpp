@@ -133,7 +133,8 @@ static void designs(const char *folder) {
   for (std::size_t i = 0; i < threads.size(); ++i) {
     threads[i] = std::thread([&, i] {
       for (int k = 1; k <= 5; ++k) {
-        for (const double value : design.mesh(0.2 * k, i, 20, 2).positions()) {
+        const auto mesh = design.mesh(0.2 * k, i, 20, 2);
+        for (const double value : mesh.positions()) {
           sums[i] += std::fabs(value) * 1e-3;
         }
       }

@@ -2,7 +2,7 @@
 //
 // - Every class here owns its part of the library and is moved, not copied. Const members may be called from several
 //   threads at once.
-// - A View is valid as long as the object that gave it.
+// - A View is valid as long as the object that gave it; temporary objects give none.
 // - What fails throws voxelastica::Error; a panic of the library arrives as one with the code Status::Internal.
 // - Texts are UTF-8. Lengths are in mm, forces in N, moduli in MPa, angles in rad.
 #ifndef VOXELASTICA_HPP
@@ -204,11 +204,15 @@ class Input {
 class Mesh {
  public:
   // x, y, z a vertex.
-  View<const double> positions() const { return detail::view(rust_->positions()); }
-  View<const double> normals() const { return detail::view(rust_->normals()); }
-  View<const double> modulus_mpa() const { return detail::view(rust_->modulus()); }
+  View<const double> positions() const & { return detail::view(rust_->positions()); }
+  View<const double> positions() const && = delete;
+  View<const double> normals() const & { return detail::view(rust_->normals()); }
+  View<const double> normals() const && = delete;
+  View<const double> modulus_mpa() const & { return detail::view(rust_->modulus()); }
+  View<const double> modulus_mpa() const && = delete;
   // Four vertices a quad.
-  View<const std::uint32_t> quads() const { return detail::view(rust_->quads()); }
+  View<const std::uint32_t> quads() const & { return detail::view(rust_->quads()); }
+  View<const std::uint32_t> quads() const && = delete;
 
  private:
   friend class Design;
@@ -220,8 +224,10 @@ class Mesh {
 class Flower {
  public:
   std::size_t vertices() const { return rust_->vertices(); }
-  View<const std::uint32_t> quads() const { return detail::view(rust_->quads()); }
-  View<const double> modulus_mpa() const { return detail::view(rust_->modulus()); }
+  View<const std::uint32_t> quads() const & { return detail::view(rust_->quads()); }
+  View<const std::uint32_t> quads() const && = delete;
+  View<const double> modulus_mpa() const & { return detail::view(rust_->modulus()); }
+  View<const double> modulus_mpa() const && = delete;
 
   // Each buffer holds three values a vertex; normals may be left out.
   void fill(double fraction, View<float> positions, View<float> normals = {}) const {
@@ -244,9 +250,10 @@ class Flower {
 // Forces and moments of one spoke in beam bending, and the hub's place, from flat to closed.
 class MorphPath {
  public:
-  View<const double> column(PathColumn column) const {
+  View<const double> column(PathColumn column) const & {
     return detail::view(detail::call([&] { return rust_->column(static_cast<std::int32_t>(column)); }));
   }
+  View<const double> column(PathColumn column) const && = delete;
 
  private:
   friend class Design;
@@ -284,18 +291,23 @@ class Design {
   }
 
   // One value a station, evenly spaced, rim first.
-  View<const double> profile(ProfileColumn column) const {
+  View<const double> profile(ProfileColumn column) const & {
     return detail::view(detail::call([&] { return rust_->profile(static_cast<std::int32_t>(column)); }));
   }
+  View<const double> profile(ProfileColumn column) const && = delete;
   // x, y a point: up one edge of the flat spoke and back along the other.
-  View<const double> outline() const { return detail::view(rust_->outline()); }
+  View<const double> outline() const & { return detail::view(rust_->outline()); }
+  View<const double> outline() const && = delete;
 
   double voxel_size_mm() const { return rust_->voxel_size(); }
   std::size_t voxel_layers() const { return rust_->voxel_layers(); }
   // Phase of every voxel of one spoke: slices, in them layers, in them across.
-  View<const std::uint8_t> voxel_phases() const { return detail::view(rust_->voxel_phases()); }
-  View<const std::size_t> voxel_offsets() const { return detail::view(rust_->voxel_offsets()); }
-  View<const std::size_t> voxel_half_widths() const { return detail::view(rust_->voxel_half_widths()); }
+  View<const std::uint8_t> voxel_phases() const & { return detail::view(rust_->voxel_phases()); }
+  View<const std::uint8_t> voxel_phases() const && = delete;
+  View<const std::size_t> voxel_offsets() const & { return detail::view(rust_->voxel_offsets()); }
+  View<const std::size_t> voxel_offsets() const && = delete;
+  View<const std::size_t> voxel_half_widths() const & { return detail::view(rust_->voxel_half_widths()); }
+  View<const std::size_t> voxel_half_widths() const && = delete;
   // x, y, z of the centres of a phase's voxels in the flat spoke.
   std::vector<double> phase_centres(std::size_t phase) const {
     return copied(detail::call([&] { return rust_->phase_centres(phase); }));
