@@ -19,7 +19,7 @@
 >>> flower = design.flower(along=200, across=16)
 >>> positions = flower.buffer()
 >>> flower.fill(0.5, positions)          # all spokes, half-way
->>> design.write("out", ["voxel_solid"])  # doctest: +SKIP
+>>> files = design.write("out", ["voxel_solid"])  # doctest: +SKIP
 
 Lengths are in mm, forces in N, moduli in MPa, angles in rad. Errors are :class:`VoxelasticaError` and read as on the
 command line. Arrays are read-only views into the native library: numpy arrays where numpy is installed, else memoryviews;

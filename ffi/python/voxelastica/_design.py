@@ -155,7 +155,7 @@ class Design:
 
     >>> design = Design.from_file("examples/hemisphere.toml")
     >>> print(f"contrast {design.contrast:.3f}, {design.spokes} spokes")
-    contrast 3.121, 8 spokes
+    contrast 2.316, 8 spokes
     >>> widest = max(design.profile.width_mm)
     >>> half_way = design.mesh(fraction=0.5).positions
 
