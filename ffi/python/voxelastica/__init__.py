@@ -14,8 +14,8 @@
 ... [voxels]
 ... size_mm = 0.5
 ... ''')
->>> design.spokes, round(design.profile.width_mm[0], 2), round(design.summary["height_mm"], 2)
-(8, 61.02, 63.66)
+>>> print(f"{design.spokes} spokes, {design.profile.width_mm[0]:.2f} mm wide, {design.summary['height_mm']:.2f} mm high")
+8 spokes, 61.02 mm wide, 63.66 mm high
 >>> flower = design.flower(along=200, across=16)
 >>> positions = flower.buffer()
 >>> flower.fill(0.5, positions)          # all spokes, half-way
