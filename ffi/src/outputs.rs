@@ -5,7 +5,7 @@ use std::path::Path;
 
 use voxelastica_core::Design;
 use voxelastica_core::input::DeckKind;
-use voxelastica_core::output::write::{OutputKind, WriteOptions, Written, estimated_bytes, write_outputs};
+use voxelastica_core::output::write::{OutputKind, WriteOptions, Written, write_outputs};
 
 use crate::arguments::{Out, path};
 use crate::boundary::enter;
@@ -77,8 +77,8 @@ fn deck_name(deck: DeckKind) -> &'static str {
 /// What could not be written, cancellation.
 pub fn write(design: &Design, folder: &Path, bits: u32, allow_large: bool, watch: &Watch) -> Result<Written, Failure> {
     let kinds = kinds(design, bits)?;
-    watch.set_total(estimated_bytes(design));
-    Ok(write_outputs(design, folder, &kinds, WriteOptions { allow_large }, &|bytes| watch.report(bytes))?)
+    let (total, progress) = (|bytes| watch.set_total(bytes), |bytes| watch.report(bytes));
+    Ok(write_outputs(design, folder, &kinds, WriteOptions { allow_large }, &total, &progress)?)
 }
 
 /// Writes outputs of the kinds `kinds` (`voxelastica_output`, combined) into a folder, which is made where it does not

@@ -87,12 +87,12 @@ pub fn write_design(
     options: WriteOptions,
     progress: Progress<'_>,
 ) -> Result<Written, Error> {
-    write_outputs(design, folder, &OutputKind::ALL, options, progress)
+    write_outputs(design, folder, &OutputKind::ALL, options, &|_| {}, progress)
 }
 
 /// Writes some kinds of a design's outputs into a folder, as [`write_design`] does. Decks are those of the kinds asked for
 /// that the design has (`decks.write`, `decks.solvers`). Files of an earlier design are removed only where all kinds are
-/// written.
+/// written. `total` is told once how many bytes that will be, about.
 ///
 /// # Errors
 /// Those of [`write_design`].
@@ -101,6 +101,7 @@ pub fn write_outputs(
     folder: &Path,
     kinds: &[OutputKind],
     options: WriteOptions,
+    total: &dyn Fn(u64),
     progress: Progress<'_>,
 ) -> Result<Written, Error> {
     let provenance = Provenance::of(design.input());
@@ -116,6 +117,10 @@ pub fn write_outputs(
     };
     let mut decks = deck::plan(design);
     decks.retain(|d| wants(OutputKind::Deck(d.kind)));
+    total(OTHER_FILES + decks.iter().map(|d| d.bytes).sum::<u64>());
+    if !progress(0) {
+        return Err(Error::Cancelled);
+    }
     require_room(folder, &decks, options)?;
 
     let mut files: Vec<(String, String)> = decks.iter().map(|d| (d.relative_path().to_owned(), describe(d))).collect();
