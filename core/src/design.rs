@@ -1,19 +1,23 @@
 //! The design pipeline: target -> widths -> modulus -> voxels -> predicted shape.
 
+mod reach;
+mod warnings;
+
 use std::sync::{Arc, OnceLock};
 
 use crate::elastica::forward::{EndForces, Equilibrium, Section, StripStiffness};
 use crate::elastica::inverse::{self, HubSupport, InverseSolution, ThrustChoice};
 use crate::elastica::morph::{Guide, MorphPath};
 use crate::elastica::{ElasticaError, tessellation};
-use crate::error::{Error, Infeasible};
+use crate::error::Error;
 use crate::input::{DesignInput, TargetInput};
 use crate::micromechanics::{PhaseSet, voigt};
 use crate::modulus_field::{ModulusField, ModulusFieldError};
 use crate::profile::Profile;
+use crate::progress::{self, Cancelled};
 use crate::target::{MeridianCurve, MeridianPoint, Target, resolve};
-use crate::voxel::counts::{Filling, fill};
-use crate::voxel::{Lattice, LatticeError, Match, Slice, SliceTarget, VoxelGrid};
+use crate::voxel::counts::{Filling, fill_unless};
+use crate::voxel::{Lattice, LatticeError, Slice, SliceTarget, VoxelGrid};
 
 /// Stations of the profile, evenly spaced, ends included.
 pub const STATIONS: usize = 1001;
@@ -64,16 +68,26 @@ impl Design {
     /// [`Error::Input`] for a target or a voxel size that cannot be used, [`Error::Infeasible`] where mechanics or the
     /// phases rule the design out.
     pub fn compute(input: &DesignInput, limits: Limits) -> Result<Self, Error> {
+        Self::compute_unless(input, limits, &progress::never)
+    }
+
+    /// Computes a design unless it is cancelled: `cancelled` is asked between the steps and before every slice of voxels.
+    ///
+    /// # Errors
+    /// Those of [`Design::compute`], and [`Error::Cancelled`].
+    pub fn compute_unless(input: &DesignInput, limits: Limits, cancelled: Cancelled<'_>) -> Result<Self, Error> {
         input.validate()?;
         let phases = input.phase_set()?;
         let size = input.voxels.size_mm;
         let lattice = Lattice::new(input.strips.length_mm, input.strips.thickness_mm, size)
             .map_err(|error| Error::lattice(size, &error))?;
 
+        let go_on = || if cancelled() { Err(Error::Cancelled) } else { Ok(()) };
         let target = resolve(input)?;
+        go_on()?;
         let body = solve_body(input, target.as_ref())?;
         let contrast = body.contrast();
-        check_reach(input, &phases, &body, target.as_ref())?;
+        reach::check(input, &phases, &body, target.as_ref())?;
 
         let outline = outline(input, &lattice, &body, limits)?;
         let scale_mpa = scale(input, &phases, &lattice, &outline, contrast);
@@ -87,7 +101,7 @@ impl Design {
             seed: input.voxels.seed,
             matching: input.voxels.matching,
         };
-        let (grid, slices) = fill(&lattice, &targets, &filling);
+        let (grid, slices) = fill_unless(&lattice, &targets, &filling, cancelled).ok_or(Error::Cancelled)?;
 
         let guide = guide(input, target.as_ref());
         let mut design = Self {
@@ -109,6 +123,7 @@ impl Design {
             modulus_field: OnceLock::new(),
         };
         design.profile = design.sample_profile()?;
+        go_on()?;
         design.predict();
         design.collect_warnings();
         Ok(design)
@@ -230,28 +245,6 @@ impl Design {
         &self.warnings
     }
 
-    /// [`Self::warnings`] and what there is to say about the files that are written: the modulus expression, the decks.
-    #[must_use]
-    pub fn warnings_for_files(&self) -> Vec<String> {
-        let mut warnings = self.warnings.clone();
-        if let Ok(field) = self.modulus_field()
-            && !field.meets_target()
-        {
-            warnings.push(format!(
-                "the closed-form expression of the modulus is up to {:.2} % off, more than {} %; the decks' own fields are exact",
-                field.max_error_percent,
-                crate::modulus_field::TARGET_ERROR_PERCENT
-            ));
-        }
-        if !self.input.decks.write.is_empty() && crate::deck::plan(self).is_empty() {
-            warnings.push(
-                "no deck is written: shell decks are for ABAQUS and for domes only (see decks.write and decks.solvers)"
-                    .to_owned(),
-            );
-        }
-        warnings
-    }
-
     /// Mean Poisson's ratio of a spoke, by volume.
     #[must_use]
     pub fn mean_poisson(&self) -> f64 {
@@ -333,61 +326,6 @@ impl Design {
             }
         }
     }
-
-    fn collect_warnings(&mut self) {
-        let widest = self.slices.iter().map(|s| (self.grid.size_mm() * 2.0 * s.half_width as f64, s.s_mm)).fold(
-            (1.0, 0.0),
-            |worst: (f64, f64), (voxels, s)| {
-                let excess = voxels / self.width_and_modulus(s).0;
-                if excess > worst.0 { (excess, s) } else { worst }
-            },
-        );
-        if widest.0 > 1.2 {
-            self.warnings.push(format!(
-                "whole voxels are up to {:.1} times as wide as the spoke (at s = {:.2} mm), so neighbouring spokes overlap; \
-                 use smaller voxels or fewer spokes",
-                widest.0, widest.1
-            ));
-        }
-        let clamped = self.slices.iter().filter(|s| s.clamped).count();
-        if clamped > 0 {
-            self.warnings.push(format!(
-                "{clamped} of {} slices want a modulus outside what the phases reach and take the nearest one",
-                self.slices.len()
-            ));
-        }
-        let reduced = self.slices.iter().filter(|s| s.intermediate_reduced).count();
-        if reduced > 0 {
-            self.warnings.push(format!(
-                "{reduced} of {} slices keep less than the wanted fraction of {}",
-                self.slices.len(),
-                self.phases.phases()[1].name
-            ));
-        }
-        if let Some(error) = self.predicted_error.filter(|e| *e > 0.01) {
-            self.warnings.push(format!(
-                "the voxelised strip is predicted to miss the target by {:.2} % of its length; smaller voxels, another \
-                 pattern{} bring it closer",
-                100.0 * error,
-                if self.input.voxels.matching == Match::Stiffness { "" } else { " or match = \"stiffness\"" }
-            ));
-        }
-        let layers = self.grid.layers();
-        let decks = &self.input.decks;
-        let odd = |edge: usize| layers * edge % 2 == 1;
-        if odd(decks.calculix_elements_per_voxel_edge) || odd(decks.elements_per_voxel_edge) {
-            self.warnings.push(format!(
-                "an odd number of layers ({layers}) has no nodes on the mid-plane: voxel_solid decks with an odd number of \
-                 elements along a voxel's edge use twice as many"
-            ));
-        }
-        if let Some(residual) = self.target.as_ref().and_then(|t| t.fit.as_ref()).map(|f| f.residual_max_mm)
-            && residual > 0.01 * self.input.strips.length_mm
-        {
-            self.warnings
-                .push(format!("the smooth meridian is up to {residual:.3} mm from the points it was fitted to"));
-        }
-    }
 }
 
 impl std::fmt::Debug for Design {
@@ -457,56 +395,6 @@ fn thrust(input: &DesignInput) -> (HubSupport, ThrustChoice) {
         .thrust
         .as_ref()
         .map_or((HubSupport::Free, ThrustChoice::EqualEnds), |thrust| (thrust.hub, thrust.resolved_choice()))
-}
-
-/// Refuses contrasts out of the phases' reach, and says which other line of thrust would be within it.
-fn check_reach(input: &DesignInput, phases: &PhaseSet, body: &Body, target: Option<&Target>) -> Result<(), Error> {
-    let (contrast, reach) = (body.contrast(), phases.reach());
-    if contrast <= reach * (1.0 + 1e-9) {
-        return Ok(());
-    }
-    let length = input.strips.length_mm;
-    let (softest_mm, stiffest_mm) = match body {
-        Body::Dome { solution, .. } => {
-            let by = |a: &(usize, &f64), b: &(usize, &f64)| a.1.total_cmp(b.1);
-            let ratios = || solution.modulus_ratio.iter().enumerate();
-            let at = |i: Option<(usize, &f64)>| i.map_or(0.0, |(i, _)| length * i as f64 / (STATIONS - 1) as f64);
-            (at(ratios().min_by(by)), at(ratios().max_by(by)))
-        }
-        Body::Strip { middle_ratio, .. } if *middle_ratio > 1.0 => (0.0, 0.5 * length),
-        Body::Strip { .. } => (0.5 * length, 0.0),
-    };
-    let mut helps = Vec::new();
-    if let Some(target) = target {
-        let hub_x = target.stations.last().map_or(0.0, |p| p.x);
-        let now = thrust(input);
-        for (other, words) in [
-            ((HubSupport::Free, ThrustChoice::LeastContrast), "choice = \"least-contrast\""),
-            ((HubSupport::Held, ThrustChoice::LeastContrast), "a held hub (hub = \"held\")"),
-        ] {
-            let found = widths(input, &target.stations, hub_x)
-                .and_then(|w| inverse::solve(target.curve.as_ref(), &target.stations, &w, other.0, other.1));
-            if let Ok(found) = found.as_ref().map(|s| s.contrast)
-                && other != now
-                && found <= reach
-            {
-                helps.push(format!("{words} needs only {found:.3}"));
-            }
-        }
-    }
-    helps.push(format!("use phases whose moduli differ by a factor of {contrast:.2} or more"));
-    let names: Vec<String> = phases.phases().iter().map(|p| format!("{} ({} MPa)", p.name, p.modulus_mpa)).collect();
-    Err(Error::infeasible(
-        &input.name,
-        Infeasible::Contrast {
-            contrast,
-            reach,
-            softest_mm,
-            stiffest_mm,
-            phases: names.join(" and "),
-            help: helps.join(", or "),
-        },
-    ))
 }
 
 /// A slice before its modulus has a scale.

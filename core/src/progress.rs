@@ -8,3 +8,12 @@ pub type Progress<'a> = &'a (dyn Fn(u64) -> bool + Sync);
 pub fn ignore(_bytes: u64) -> bool {
     true
 }
+
+/// Asked whether work is to stop; from any thread, and often.
+pub type Cancelled<'a> = &'a (dyn Fn() -> bool + Sync);
+
+/// A [`Cancelled`] that never is.
+#[must_use]
+pub fn never() -> bool {
+    false
+}

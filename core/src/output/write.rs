@@ -8,6 +8,7 @@ use super::{Provenance, Summary, design_json, json, tables};
 use crate::deck::{self, DeckError, DeckPlan};
 use crate::design::Design;
 use crate::error::Error;
+use crate::input::DeckKind;
 use crate::progress::Progress;
 use crate::{SCHEMA, report};
 
@@ -36,6 +37,32 @@ pub struct WriteOptions {
     pub allow_large: bool,
 }
 
+/// A kind of output.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OutputKind {
+    /// One of the decks, for every solver the design names.
+    Deck(DeckKind),
+    /// `profile.csv` and `slices.csv`.
+    Tables,
+    /// `report.html`.
+    Report,
+    /// `design.json`.
+    Design,
+}
+
+impl OutputKind {
+    /// All kinds, in the order in which they are written.
+    pub const ALL: [Self; 7] = [
+        Self::Deck(DeckKind::GradedShell),
+        Self::Deck(DeckKind::GradedSolid),
+        Self::Deck(DeckKind::VoxelSolid),
+        Self::Deck(DeckKind::VoxelShell),
+        Self::Tables,
+        Self::Report,
+        Self::Design,
+    ];
+}
+
 /// What was written.
 #[derive(Debug, Clone)]
 pub struct Written {
@@ -60,18 +87,51 @@ pub fn write_design(
     options: WriteOptions,
     progress: Progress<'_>,
 ) -> Result<Written, Error> {
+    write_outputs(design, folder, &OutputKind::ALL, options, &|_| {}, progress)
+}
+
+/// Writes some kinds of a design's outputs into a folder, as [`write_design`] does. Decks are those of the kinds asked for
+/// that the design has (`decks.write`, `decks.solvers`). Files of an earlier design are removed only where all kinds are
+/// written. `total` is told once how many bytes that will be, about.
+///
+/// # Errors
+/// Those of [`write_design`].
+pub fn write_outputs(
+    design: &Design,
+    folder: &Path,
+    kinds: &[OutputKind],
+    options: WriteOptions,
+    total: &dyn Fn(u64),
+    progress: Progress<'_>,
+) -> Result<Written, Error> {
     let provenance = Provenance::of(design.input());
     let summary = Summary::of(design);
     let profile = design.profile();
-    let field = design.modulus_field().map_err(|e| Error::Internal(format!("the modulus field: {e}")))?;
-    let decks = deck::plan(design);
+    let wants = |kind: OutputKind| kinds.contains(&kind);
+    let field = if wants(OutputKind::Report) || wants(OutputKind::Design) {
+        Some(design.modulus_field().map_err(|e| Error::Internal(format!("the modulus field: {e}")))?)
+    } else {
+        None
+    };
+    let mut decks = deck::plan(design);
+    decks.retain(|d| wants(OutputKind::Deck(d.kind)));
+    total(OTHER_FILES + decks.iter().map(|d| d.bytes).sum::<u64>());
+    if !progress(0) {
+        return Err(Error::Cancelled);
+    }
     require_room(folder, &decks, options)?;
 
     let mut files: Vec<(String, String)> = decks.iter().map(|d| (d.relative_path().to_owned(), describe(d))).collect();
-    files.push(("profile.csv".to_owned(), format!("the profile at {} stations", profile.s.len())));
-    files.push(("slices.csv".to_owned(), format!("counts, modulus and stiffness of {} slices", design.slices().len())));
-    files.push(("report.html".to_owned(), "this page".to_owned()));
-    files.push(("design.json".to_owned(), "the whole result, for programs".to_owned()));
+    let mut others = |kind: OutputKind, name: &str, what: String| {
+        if wants(kind) {
+            files.push((name.to_owned(), what));
+        }
+    };
+    let slices = design.slices().len();
+    others(OutputKind::Tables, "profile.csv", format!("the profile at {} stations", profile.s.len()));
+    others(OutputKind::Tables, "slices.csv", format!("counts, modulus and stiffness of {slices} slices"));
+    others(OutputKind::Report, "report.html", "this page".to_owned());
+    others(OutputKind::Design, "design.json", "the whole result, for programs".to_owned());
     let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
 
     let mut staging = Staging::new(folder)?;
@@ -81,18 +141,26 @@ pub fn write_design(
         staging.write(plan.relative_path(), |out| deck::write(design, plan, &provenance, out, &counted))?;
         before += plan.bytes;
     }
-    staging.write("profile.csv", |out| tables::write_profile(design, out))?;
-    staging.write("slices.csv", |out| tables::write_slices(design, out))?;
-    let page = report::html(design, &summary, Some(field), &provenance, &files)
-        .map_err(|e| Error::Internal(format!("the report: {e}")))?;
-    staging.write_text("report.html", &page)?;
-    let document = design_json::document(design, &summary, Some(field), &provenance, &names)?;
-    let text = json::to_text(&document).map_err(|e| Error::Internal(format!("design.json: {e}")))?;
-    staging.write("design.json", |out| out.write_all(text.as_bytes()))?;
+    if wants(OutputKind::Tables) {
+        staging.write("profile.csv", |out| tables::write_profile(design, out))?;
+        staging.write("slices.csv", |out| tables::write_slices(design, out))?;
+    }
+    if wants(OutputKind::Report) {
+        let page = report::html(design, &summary, field, &provenance, &files)
+            .map_err(|e| Error::Internal(format!("the report: {e}")))?;
+        staging.write_text("report.html", &page)?;
+    }
+    if wants(OutputKind::Design) {
+        let document = design_json::document(design, &summary, field, &provenance, &names)?;
+        let text = json::to_text(&document).map_err(|e| Error::Internal(format!("design.json: {e}")))?;
+        staging.write("design.json", |out| out.write_all(text.as_bytes()))?;
+    }
     if !progress(before + OTHER_FILES) {
         return Err(Error::Cancelled);
     }
-    remove_stale(folder, &names);
+    if OutputKind::ALL.iter().all(|kind| wants(*kind)) {
+        remove_stale(folder, &names);
+    }
     staging.commit()?;
     Ok(Written { summary, provenance, files: names.iter().map(|n| (*n).to_owned()).collect() })
 }

@@ -13,6 +13,7 @@ use super::pattern::Pattern;
 use super::section::{layer_stiffness, section};
 use crate::elastica::forward::Section;
 use crate::micromechanics::PhaseSet;
+use crate::progress::{Cancelled, never};
 
 /// Which property of the slice meets its target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -74,19 +75,34 @@ pub struct Filling<'a> {
 /// Fills a strip with voxels, slice by slice from rim to hub.
 #[must_use]
 pub fn fill(lattice: &Lattice, targets: &[SliceTarget], filling: &Filling<'_>) -> (VoxelGrid, Vec<Slice>) {
+    fill_unless(lattice, targets, filling, &never).unwrap_or_else(|| unreachable!("nothing cancels it"))
+}
+
+/// As [`fill`], but asks `cancelled` before every slice and returns `None` once it says so.
+#[must_use]
+pub fn fill_unless(
+    lattice: &Lattice,
+    targets: &[SliceTarget],
+    filling: &Filling<'_>,
+    cancelled: Cancelled<'_>,
+) -> Option<(VoxelGrid, Vec<Slice>)> {
     let moduli = filling.phases.moduli();
     let size = lattice.size_mm;
     let mut slices = match filling.matching {
-        Match::Modulus => counts_by_modulus(lattice, targets, filling),
-        Match::Stiffness => counts_by_stiffness(lattice, targets, filling),
+        Match::Modulus => counts_by_modulus(lattice, targets, filling, cancelled)?,
+        Match::Stiffness => counts_by_stiffness(lattice, targets, filling, cancelled)?,
     };
     let mut grid = VoxelGrid::new(size, lattice.layers, targets.iter().map(|t| t.half_width).collect());
-    grid.slices_mut().into_par_iter().zip(slices.par_iter_mut()).enumerate().for_each(|(i, (voxels, slice))| {
+    grid.slices_mut().into_par_iter().zip(slices.par_iter_mut()).enumerate().try_for_each(|(i, (voxels, slice))| {
+        if cancelled() {
+            return None;
+        }
         let order = filling.pattern.order(slice.half_width, lattice.layers, filling.seed, i);
         place(voxels, &order, &slice.counts);
         slice.section = section(&layer_stiffness(voxels, lattice.layers, &moduli, size), size);
-    });
-    (grid, slices)
+        Some(())
+    })?;
+    Some((grid, slices))
 }
 
 /// Gives the first places of the order to the softest phase, and so on.
@@ -110,16 +126,24 @@ struct Carry {
     rigid: f64,
 }
 
-fn counts_by_modulus(lattice: &Lattice, targets: &[SliceTarget], filling: &Filling<'_>) -> Vec<Slice> {
+fn counts_by_modulus(
+    lattice: &Lattice,
+    targets: &[SliceTarget],
+    filling: &Filling<'_>,
+    cancelled: Cancelled<'_>,
+) -> Option<Vec<Slice>> {
     let mut carry = Carry::default();
     targets
         .iter()
         .enumerate()
         .map(|(i, target)| {
+            if cancelled() {
+                return None;
+            }
             let mut slice = blank(lattice, i, target, filling);
             (slice.counts, carry) = count(slice.modulus_target_mpa, &slice, lattice, filling, carry);
             slice.modulus_mpa = mean_modulus(&slice.counts, filling);
-            slice
+            Some(slice)
         })
         .collect()
 }
@@ -178,7 +202,12 @@ fn mean_modulus(counts: &[u32; 3], filling: &Filling<'_>) -> f64 {
 ///
 /// The stiffness rises with the modulus because every voxel that turns stiffer raises it, so bisection on the modulus
 /// finds the two neighbouring counts.
-fn counts_by_stiffness(lattice: &Lattice, targets: &[SliceTarget], filling: &Filling<'_>) -> Vec<Slice> {
+fn counts_by_stiffness(
+    lattice: &Lattice,
+    targets: &[SliceTarget],
+    filling: &Filling<'_>,
+    cancelled: Cancelled<'_>,
+) -> Option<Vec<Slice>> {
     let moduli = filling.phases.moduli();
     let (soft, stiff) = (filling.phases.softest(), filling.phases.stiffest());
     let size = lattice.size_mm;
@@ -192,6 +221,9 @@ fn counts_by_stiffness(lattice: &Lattice, targets: &[SliceTarget], filling: &Fil
         .iter()
         .enumerate()
         .map(|(i, target)| {
+            if cancelled() {
+                return None;
+            }
             let mut slice = blank(lattice, i, target, filling);
             let order = filling.pattern.order(slice.half_width, lattice.layers, filling.seed, i);
             voxels.clear();
@@ -223,7 +255,7 @@ fn counts_by_stiffness(lattice: &Lattice, targets: &[SliceTarget], filling: &Fil
             slice.counts = counts;
             slice.clamped = clamped;
             slice.modulus_mpa = mean_modulus(&slice.counts, filling);
-            slice
+            Some(slice)
         })
         .collect()
 }
