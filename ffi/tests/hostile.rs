@@ -63,10 +63,10 @@ const CALLS: &[(&str, Call)] = calls! {
     voxelastica_text_length(s) { assert_eq!(voxelastica_text_length(handle(s)), 0); None };
     voxelastica_text_free(s) freed(s, voxelastica_text_free(handle(s)));
     voxelastica_input_parse_toml(s) Some(voxelastica_input_parse_toml(
-        s.text.0, s.text.1, s.text.0, s.text.1, s.text.0, s.text.1, s.out.cast(), s.error));
+        s.text.0, s.text.1, s.text.0, s.text.1, s.text.0, s.text.1, None, ptr::null_mut(), s.out.cast(), s.error));
     voxelastica_input_parse_json(s) Some(voxelastica_input_parse_json(
-        s.text.0, s.text.1, s.text.0, s.text.1, s.text.0, s.text.1, s.out.cast(), s.error));
-    voxelastica_input_read(s) Some(voxelastica_input_read(s.text.0, s.text.1, s.out.cast(), s.error));
+        s.text.0, s.text.1, s.text.0, s.text.1, s.text.0, s.text.1, None, ptr::null_mut(), s.out.cast(), s.error));
+    voxelastica_input_read(s) Some(voxelastica_input_read(s.text.0, s.text.1, None, ptr::null_mut(), s.out.cast(), s.error));
     voxelastica_input_validate(s) Some(voxelastica_input_validate(handle(s), s.error));
     voxelastica_input_json(s) Some(voxelastica_input_json(handle(s), s.out.cast(), s.error));
     voxelastica_input_hash(s) Some(voxelastica_input_hash(handle(s), s.out.cast(), s.error));

@@ -113,7 +113,8 @@ pub fn write_outputs(
     } else {
         None
     };
-    let mut decks = deck::plan(design);
+    // The bytes done are none: asking is all that this is about.
+    let mut decks = deck::plan_unless(design, &|| !progress(0)).map_err(|_| Error::Cancelled)?;
     decks.retain(|d| wants(OutputKind::Deck(d.kind)));
     total(OTHER_FILES + decks.iter().map(|d| d.bytes).sum::<u64>());
     if !progress(0) {

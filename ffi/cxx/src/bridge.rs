@@ -38,9 +38,9 @@ pub mod ffi {
         type CxxFlower;
         type CxxPath;
 
-        fn parse_toml(text: &[u8], file: &[u8], folder: &[u8]) -> Result<Box<CxxInput>>;
-        fn parse_json(text: &[u8], file: &[u8], folder: &[u8]) -> Result<Box<CxxInput>>;
-        fn read(file: &[u8]) -> Result<Box<CxxInput>>;
+        fn parse_toml(text: &[u8], file: &[u8], folder: &[u8], progress: &Progress) -> Result<Box<CxxInput>>;
+        fn parse_json(text: &[u8], file: &[u8], folder: &[u8], progress: &Progress) -> Result<Box<CxxInput>>;
+        fn read(file: &[u8], progress: &Progress) -> Result<Box<CxxInput>>;
         fn validate(self: &CxxInput) -> Result<()>;
         fn json(self: &CxxInput) -> Result<String>;
         fn hash(self: &CxxInput) -> Result<String>;
@@ -135,24 +135,28 @@ fn told<T: Send>(
 /// An input.
 pub struct CxxInput(DesignInput);
 
-fn parse_toml(text: &[u8], file: &[u8], folder: &[u8]) -> Result<Box<CxxInput>> {
-    parse("toml", Format::Toml, text, file, folder)
+fn parse_toml(text: &[u8], file: &[u8], folder: &[u8], progress: &ffi::Progress) -> Result<Box<CxxInput>> {
+    parse(Format::Toml, text, file, folder, progress)
 }
 
-fn parse_json(text: &[u8], file: &[u8], folder: &[u8]) -> Result<Box<CxxInput>> {
-    parse("json", Format::Json, text, file, folder)
+fn parse_json(text: &[u8], file: &[u8], folder: &[u8], progress: &ffi::Progress) -> Result<Box<CxxInput>> {
+    parse(Format::Json, text, file, folder, progress)
 }
 
-fn parse(name: &str, format: Format, text: &[u8], file: &[u8], folder: &[u8]) -> Result<Box<CxxInput>> {
+fn parse(format: Format, text: &[u8], file: &[u8], folder: &[u8], progress: &ffi::Progress) -> Result<Box<CxxInput>> {
     enter(|| {
+        let name = if format == Format::Toml { "toml" } else { "json" };
         let (text, file) = (checked(name, text)?, checked("file", file)?);
         let folder = Path::new(checked("folder", folder)?);
-        Ok(Box::new(CxxInput(input::parse(text, format, file, folder)?)))
+        Ok(Box::new(CxxInput(told(progress, |watch| input::parse(text, format, file, folder, watch))?)))
     })
 }
 
-fn read(file: &[u8]) -> Result<Box<CxxInput>> {
-    enter(|| Ok(Box::new(CxxInput(DesignInput::read(Path::new(checked("file", file)?))?))))
+fn read(file: &[u8], progress: &ffi::Progress) -> Result<Box<CxxInput>> {
+    enter(|| {
+        let file = Path::new(checked("file", file)?);
+        Ok(Box::new(CxxInput(told(progress, |watch| input::read(file, watch))?)))
+    })
 }
 
 fn checked<'a>(name: &str, text: &'a [u8]) -> std::result::Result<&'a str, Failure> {

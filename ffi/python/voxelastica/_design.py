@@ -174,12 +174,12 @@ class Design:
         Further options of all ways to make a design: ``allow_large`` (more than 200 million voxels) and ``progress``, a
         function of ``done`` and ``total`` that may return ``False`` to cancel.
         """
-        return cls(_parse("toml", toml, file, folder), **options)
+        return cls(_parse("toml", toml, file, folder, options.get("progress")), **options)
 
     @classmethod
     def from_json(cls, text: str, *, file: str = "", folder: str | os.PathLike[str] = "", **options: Any) -> Design:
         """Computes the design of a JSON text with the TOML's keys, or of a whole ``design.json``."""
-        return cls(_parse("json", text, file, folder), **options)
+        return cls(_parse("json", text, file, folder, options.get("progress")), **options)
 
     @classmethod
     def from_dict(cls, keys: Mapping[str, Any], *, folder: str | os.PathLike[str] = "", **options: Any) -> Design:
@@ -189,7 +189,9 @@ class Design:
     @classmethod
     def from_file(cls, path: str | os.PathLike[str], **options: Any) -> Design:
         """Computes the design of a file: ``.json`` as JSON, anything else as TOML."""
-        return cls(make("input", "input_read", *encoded(os.fspath(path))), **options)
+        with Watcher(options.get("progress")) as callback:
+            source = make("input", "input_read", *encoded(os.fspath(path)), callback, None)
+        return cls(source, **options)
 
     @cached_property
     def input(self) -> dict[str, Any]:
@@ -327,5 +329,9 @@ class Design:
         return f"<Design {self.name!r}: {self.spokes} x {self.input['strips']['length_mm']} mm>"
 
 
-def _parse(kind: str, source: str, file: str, folder: str | os.PathLike[str]) -> Handle:
-    return make("input", f"input_parse_{kind}", *encoded(source), *encoded(file), *encoded(os.fspath(folder)))
+def _parse(
+    kind: str, source: str, file: str, folder: str | os.PathLike[str], progress: Progress | None = None
+) -> Handle:
+    texts = (*encoded(source), *encoded(file), *encoded(os.fspath(folder)))
+    with Watcher(progress) as callback:
+        return make("input", f"input_parse_{kind}", *texts, callback, None)

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-ABI_VERSION = 1
+ABI_VERSION = 2
 
 _NAMES = {"win32": "voxelastica.dll", "darwin": "libvoxelastica.dylib"}
 
@@ -96,9 +96,9 @@ DECLARATIONS: dict[str, tuple[Any, list[Any]]] = {
     "text_data": (c.c_void_p, [_HANDLE]),
     "text_length": (c.c_size_t, [_HANDLE]),
     "text_free": _FREE,
-    "input_parse_toml": (c.c_int32, [*_TEXT, *_TEXT, *_TEXT, _OUT_HANDLE, _ERROR]),
-    "input_parse_json": (c.c_int32, [*_TEXT, *_TEXT, *_TEXT, _OUT_HANDLE, _ERROR]),
-    "input_read": (c.c_int32, [*_TEXT, _OUT_HANDLE, _ERROR]),
+    "input_parse_toml": (c.c_int32, [*_TEXT, *_TEXT, *_TEXT, *_PROGRESS, _OUT_HANDLE, _ERROR]),
+    "input_parse_json": (c.c_int32, [*_TEXT, *_TEXT, *_TEXT, *_PROGRESS, _OUT_HANDLE, _ERROR]),
+    "input_read": (c.c_int32, [*_TEXT, *_PROGRESS, _OUT_HANDLE, _ERROR]),
     "input_validate": (c.c_int32, [_HANDLE, _ERROR]),
     "input_json": (c.c_int32, _TO_TEXT),
     "input_hash": (c.c_int32, _TO_TEXT),

@@ -44,7 +44,7 @@ static const char *SMALL =
 static voxelastica_input *parsed(const char *toml) {
   voxelastica_input *input = NULL;
   voxelastica_error *error = NULL;
-  if (voxelastica_input_parse_toml(TEXT(toml), NULL, 0, NULL, 0, &input, &error) != VOXELASTICA_STATUS_OK) {
+  if (voxelastica_input_parse_toml(TEXT(toml), NULL, 0, NULL, 0, NULL, NULL, &input, &error) != VOXELASTICA_STATUS_OK) {
     fprintf(stderr, "%s\n", voxelastica_error_message(error));
     CHECK(0);
   }
@@ -103,11 +103,11 @@ static void inputs(const char *file) {
   voxelastica_input *input = NULL, *again = NULL;
   voxelastica_text *json = NULL, *one = NULL, *two = NULL;
   voxelastica_error *error = NULL;
-  CHECK(voxelastica_input_read(TEXT(file), &input, &error) == VOXELASTICA_STATUS_OK);
+  CHECK(voxelastica_input_read(TEXT(file), NULL, NULL, &input, &error) == VOXELASTICA_STATUS_OK);
   CHECK(voxelastica_input_validate(input, &error) == VOXELASTICA_STATUS_OK);
   CHECK(voxelastica_input_json(input, &json, &error) == VOXELASTICA_STATUS_OK);
   const char *text = voxelastica_text_data(json);
-  CHECK(voxelastica_input_parse_json(TEXT(text), NULL, 0, NULL, 0, &again, &error) == VOXELASTICA_STATUS_OK);
+  CHECK(voxelastica_input_parse_json(TEXT(text), NULL, 0, NULL, 0, NULL, NULL, &again, &error) == VOXELASTICA_STATUS_OK);
   CHECK(voxelastica_input_hash(input, &one, &error) == VOXELASTICA_STATUS_OK);
   CHECK(voxelastica_input_hash(again, &two, &error) == VOXELASTICA_STATUS_OK);
   CHECK(strcmp(voxelastica_text_data(one), voxelastica_text_data(two)) == 0);
@@ -126,19 +126,19 @@ static void inputs(const char *file) {
   status = voxelastica_input_validate((const voxelastica_input *)(const void *)&status, &error);
   failed(status, VOXELASTICA_STATUS_BAD_HANDLE, error, "input", "not a handle");
   again = NULL;
-  status = voxelastica_input_parse_toml("name = \"\xff\xfe\"", 11, NULL, 0, NULL, 0, &again, &error);
+  status = voxelastica_input_parse_toml("name = \"\xff\xfe\"", 11, NULL, 0, NULL, 0, NULL, NULL, &again, &error);
   failed(status, VOXELASTICA_STATUS_BAD_TEXT, error, "toml", "UTF-8");
-  status = voxelastica_input_parse_toml(NULL, 5, NULL, 0, NULL, 0, &again, &error);
+  status = voxelastica_input_parse_toml(NULL, 5, NULL, 0, NULL, 0, NULL, NULL, &again, &error);
   failed(status, VOXELASTICA_STATUS_NULL_ARGUMENT, error, "toml", "null");
-  status = voxelastica_input_parse_toml(SMALL, SIZE_MAX, NULL, 0, NULL, 0, &again, &error);
+  status = voxelastica_input_parse_toml(SMALL, SIZE_MAX, NULL, 0, NULL, 0, NULL, NULL, &again, &error);
   failed(status, VOXELASTICA_STATUS_WRONG_LENGTH, error, "toml", "long");
-  status = voxelastica_input_parse_toml(TEXT(SMALL), NULL, 0, NULL, 0, NULL, &error);
+  status = voxelastica_input_parse_toml(TEXT(SMALL), NULL, 0, NULL, 0, NULL, NULL, NULL, &error);
   failed(status, VOXELASTICA_STATUS_NULL_ARGUMENT, error, "input", "null");
   const char *wrong = "[target]\nkind = \"hemi-ellipsoid\"\n[strips]\ncuont = 3\n";
-  status = voxelastica_input_parse_toml(TEXT(wrong), TEXT("my.toml"), NULL, 0, &again, &error);
+  status = voxelastica_input_parse_toml(TEXT(wrong), TEXT("my.toml"), NULL, 0, NULL, NULL, &again, &error);
   CHECK(strcmp(voxelastica_error_file(error), "my.toml") == 0 && voxelastica_error_line(error) == 4);
   failed(status, VOXELASTICA_STATUS_INPUT, error, "strips.cuont", "count");
-  status = voxelastica_input_read(TEXT("no/such.toml"), &again, &error);
+  status = voxelastica_input_read(TEXT("no/such.toml"), NULL, NULL, &again, &error);
   CHECK(strcmp(voxelastica_error_file(error), "no/such.toml") == 0);
   failed(status, VOXELASTICA_STATUS_INPUT, error, "", "no such file");
   CHECK(again == NULL);

@@ -170,17 +170,23 @@ auto watched(const Progress &function, Body body) {
 // A design as its author states it, read and checked.
 class Input {
  public:
-  // `file` names the text in errors; paths in it are relative to `folder`.
-  static Input from_toml(std::string_view toml, std::string_view file = {}, std::string_view folder = {}) {
-    return Input(detail::call(
-        [&] { return bridge::parse_toml(detail::bytes(toml), detail::bytes(file), detail::bytes(folder)); }));
+  // `file` names the text in errors; paths in it are relative to `folder`. Large meshes take seconds: `progress` may
+  // cancel.
+  static Input from_toml(std::string_view toml, std::string_view file = {}, std::string_view folder = {},
+                         const Progress &progress = {}) {
+    return Input(detail::watched(progress, [&](const bridge::Progress &told) {
+      return bridge::parse_toml(detail::bytes(toml), detail::bytes(file), detail::bytes(folder), told);
+    }));
   }
-  static Input from_json(std::string_view json, std::string_view file = {}, std::string_view folder = {}) {
-    return Input(detail::call(
-        [&] { return bridge::parse_json(detail::bytes(json), detail::bytes(file), detail::bytes(folder)); }));
+  static Input from_json(std::string_view json, std::string_view file = {}, std::string_view folder = {},
+                         const Progress &progress = {}) {
+    return Input(detail::watched(progress, [&](const bridge::Progress &told) {
+      return bridge::parse_json(detail::bytes(json), detail::bytes(file), detail::bytes(folder), told);
+    }));
   }
-  static Input read(std::string_view file) {
-    return Input(detail::call([&] { return bridge::read(detail::bytes(file)); }));
+  static Input read(std::string_view file, const Progress &progress = {}) {
+    return Input(detail::watched(
+        progress, [&](const bridge::Progress &told) { return bridge::read(detail::bytes(file), told); }));
   }
 
   void validate() const {
