@@ -49,6 +49,18 @@ pub enum FabricationError {
         /// Limit.
         limit: u32,
     },
+    /// An outline that was moved outward by half a kerf crosses itself.
+    #[error(
+        "with a kerf of {kerf_mm} mm an outline crosses itself at x = {x:.2} mm, y = {y:.2} mm; use a narrower kerf"
+    )]
+    OutlineCrosses {
+        /// Width of the cut, mm.
+        kerf_mm: f64,
+        /// Where, mm.
+        x: f64,
+        /// Where, mm.
+        y: f64,
+    },
 }
 
 impl FabricationError {
@@ -57,6 +69,7 @@ impl FabricationError {
     pub fn key(&self) -> &'static str {
         match self {
             Self::NotApplicable { .. } | Self::Unknown { .. } => "fabrication.write",
+            Self::OutlineCrosses { .. } => "fabrication.kerf_mm",
             Self::TooManyVoxels { .. } | Self::ImageTooLarge { .. } => "fabrication.printer",
         }
     }

@@ -6,6 +6,8 @@
 
 mod error;
 mod gcvf;
+pub mod pattern;
+mod preview;
 mod print_stack;
 pub mod raster;
 pub mod record;
@@ -99,7 +101,8 @@ pub trait Maker: Sync {
 }
 
 /// The makers, in the order in which they write.
-const MAKERS: &[&dyn Maker] = &[&print_stack::PrintStack, &print_stack::Gcvf];
+const MAKERS: &[&dyn Maker] =
+    &[&print_stack::PrintStack, &print_stack::Gcvf, &pattern::DxfPattern, &pattern::SvgPattern, &preview::Preview];
 
 fn maker(kind: FabricationKind) -> Result<&'static dyn Maker, FabricationError> {
     MAKERS.iter().copied().find(|maker| maker.kind() == kind).ok_or(FabricationError::Unknown { kind })
