@@ -145,8 +145,8 @@ fn an_isolated_voxel_is_named() {
 
 #[test]
 fn a_bent_strip_conducts_as_a_part_of_a_ring() {
-    // Between the ends of a sector of a ring: k w ln(r2/r1) / angle. Of second order in the cells' size.
-    let (radius, angle, thickness) = (10.0, std::f64::consts::FRAC_PI_2, 4.0);
+    // Between the ends of a sector of a ring: k w ln(r2/r1) / angle. At least of second order in the cells' size.
+    let (radius, angle, thickness) = (10.0_f64, std::f64::consts::FRAC_PI_2, 4.0);
     let exact = 3.0 * ((radius + 0.5 * thickness) / (radius - 0.5 * thickness)).ln() / angle;
     let error = |n: usize| {
         let size_mm = thickness / n as f64;
@@ -214,11 +214,11 @@ fn a_slab_warms_up_as_its_series_says() {
         start: 316.15,
     };
     let options = TransientOptions {
-        tolerance: 1e-5,
+        tolerance: 2e-6,
         range: Some(77.0),
         first_step: 0.01,
         end: 6000.0,
-        solver: Tolerance { relative: 1e-7, iterations: 200 },
+        solver: Tolerance { relative: 1e-5, iterations: 200 },
     };
     let end = mesh.node([80, 0, 0]);
     let times = [100.0, 300.0, 1000.0, 2000.0];
@@ -280,7 +280,7 @@ fn charges_relax_with_the_time_constant_of_their_phase() {
             range: None,
             first_step: 1e-6,
             end: 2e-3,
-            solver: Tolerance { relative: 1e-8, iterations: 200 },
+            solver: Tolerance { relative: 1e-5, iterations: 200 },
         };
         let resistance = 10.0 / (sigma * 2.0);
         let rim = mesh.node([0, 1, 2]);

@@ -60,7 +60,8 @@ impl Brick {
         let at = 0.5 / 3.0_f64.sqrt();
         let mut brick = Self { conductance: [0.0; 64], volumes: [0.0; 8] };
         for point in 0..8_usize {
-            let local = [point >> 2 & 1, point >> 1 & 1, point & 1].map(|bit| if bit == 1 { 0.5 + at } else { 0.5 - at });
+            let local =
+                [point >> 2 & 1, point >> 1 & 1, point & 1].map(|bit| if bit == 1 { 0.5 + at } else { 0.5 - at });
             let (values, slopes) = shape(local);
             let mut jacobian = [[0.0; 3]; 3];
             for (node, slope) in nodes.iter().zip(&slopes) {
@@ -107,11 +108,7 @@ pub(super) fn shape(local: [f64; 3]) -> ([f64; 8], [[f64; 3]; 8]) {
         let factor = |d: usize| if bits[d] == 1 { local[d] } else { 1.0 - local[d] };
         let sign = |d: usize| if bits[d] == 1 { 1.0 } else { -1.0 };
         values[a] = factor(0) * factor(1) * factor(2);
-        slopes[a] = [
-            sign(0) * factor(1) * factor(2),
-            factor(0) * sign(1) * factor(2),
-            factor(0) * factor(1) * sign(2),
-        ];
+        slopes[a] = [sign(0) * factor(1) * factor(2), factor(0) * sign(1) * factor(2), factor(0) * factor(1) * sign(2)];
     }
     (values, slopes)
 }

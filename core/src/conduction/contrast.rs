@@ -51,7 +51,8 @@ pub(super) fn solve(
     let parts = Parts::new(mesh, &strong, boundary);
     let ratio = weak / most;
 
-    let mut conductor = Conductor { plain: Plain::new(Operator::new(mesh, &strong, &[], &boundary.given)), parts: &parts };
+    let mut conductor =
+        Conductor { plain: Plain::new(Operator::new(mesh, &strong, &[], &boundary.given)), parts: &parts };
     watch.at(0.05)?;
     let weak_operator = Operator::new(mesh, &weaker, &[], &parts.fixed);
     let weights = parts.weights(&weak_operator);
@@ -74,30 +75,31 @@ pub(super) fn solve(
     for sweep in 1..=MOST_SWEEPS {
         let before = total.count;
         let share = |part: f64| 0.1 + 0.9 * (sweep as f64 - 1.0 + part) / (sweep as f64 + 1.0);
-        let mut stage = |system: &mut dyn System, load: &[f64], which: usize, name: &'static str, total: &mut Iterations| {
-            let mut correction = vec![0.0; n];
-            // Measured against the largest load so far: later turns only correct.
-            let mut trial = vec![0.0; n];
-            system.precondition(load, &mut trial, &|| true);
-            scales[which] = scales[which].max(dot(load, &trial));
-            let part = watch.part(share(0.5 * which as f64), share(0.5 + 0.5 * which as f64));
-            let scale = Some(scales[which]);
-            let (found, reached) = pcg::solve(system, load, &mut correction, options.tolerance, scale, part)?;
-            total.count += found.count;
-            total.residual = total.residual.max(if sweep > 1 { found.residual } else { 0.0 });
-            if reached {
-                Ok(correction)
-            } else {
-                Err(ConductionError::NotConverged {
-                    stage: name,
-                    iterations: found.count,
-                    residual: found.residual,
-                    tolerance: options.tolerance.relative,
-                    least,
-                    most,
-                })
-            }
-        };
+        let mut stage =
+            |system: &mut dyn System, load: &[f64], which: usize, name: &'static str, total: &mut Iterations| {
+                let mut correction = vec![0.0; n];
+                // Measured against the largest load so far: later turns only correct.
+                let mut trial = vec![0.0; n];
+                system.precondition(load, &mut trial, &|| true);
+                scales[which] = scales[which].max(dot(load, &trial));
+                let part = watch.part(share(0.5 * which as f64), share(0.5 + 0.5 * which as f64));
+                let scale = Some(scales[which]);
+                let (found, reached) = pcg::solve(system, load, &mut correction, options.tolerance, scale, part)?;
+                total.count += found.count;
+                total.residual = total.residual.max(if sweep > 1 { found.residual } else { 0.0 });
+                if reached {
+                    Ok(correction)
+                } else {
+                    Err(ConductionError::NotConverged {
+                        stage: name,
+                        iterations: found.count,
+                        residual: found.residual,
+                        tolerance: options.tolerance.relative,
+                        least,
+                        most,
+                    })
+                }
+            };
 
         // A_C w = f - e A_I (a + w).
         add(&levels, &differences, &mut sum);
@@ -130,7 +132,15 @@ pub(super) fn solve(
             let slice_flux = through.iter().zip(&around).map(|(c, i)| most * c + weak * i).collect();
             let apart = Some(Apart { floating: parts.floating, percolates: parts.percolates, sweeps: sweep });
             let levels = conductor.plain.multigrid.levels();
-            return Ok(Steady { values: sum, slice_flux, imbalance: 0.0, iterations: total, levels, contrast: 1.0, apart });
+            return Ok(Steady {
+                values: sum,
+                slice_flux,
+                imbalance: 0.0,
+                iterations: total,
+                levels,
+                contrast: 1.0,
+                apart,
+            });
         }
     }
     Err(ConductionError::NotConverged {
@@ -188,7 +198,8 @@ impl Parts {
                 _ => Hold::Through,
             };
         }
-        let fixed = |node: usize| boundary.given[node] || (roots[node] != NONE && hold[roots[node] as usize] != Hold::Floating);
+        let fixed =
+            |node: usize| boundary.given[node] || (roots[node] != NONE && hold[roots[node] as usize] != Hold::Floating);
         let fixed: Vec<bool> = (0..mesh.nodes()).map(fixed).collect();
         let is_root = |n: &usize| roots[*n] as usize == *n;
         let floating = (0..mesh.nodes()).filter(is_root).filter(|n| hold[*n] == Hold::Floating).count();
@@ -209,7 +220,8 @@ impl Parts {
 
     /// First `w`: given values of parts that carry current.
     fn lift(&self, boundary: &Boundary) -> Vec<f64> {
-        let value = |n: usize| if boundary.given[n] && self.of(n) == Some(Hold::Through) { boundary.values[n] } else { 0.0 };
+        let value =
+            |n: usize| if boundary.given[n] && self.of(n) == Some(Hold::Through) { boundary.values[n] } else { 0.0 };
         (0..self.roots.len()).map(value).collect()
     }
 

@@ -197,11 +197,9 @@ impl BrickMesh {
         let [plane, level, across] = node;
         let centred = |index: usize, cells: usize, size: f64| (index as f64 - 0.5 * cells as f64) * size;
         match &self.geometry {
-            Geometry::Cubes(size) => [
-                plane as f64 * size,
-                centred(across, self.cells[2], *size),
-                centred(level, self.cells[1], *size),
-            ],
+            Geometry::Cubes(size) => {
+                [plane as f64 * size, centred(across, self.cells[2], *size), centred(level, self.cells[1], *size)]
+            }
             Geometry::Sections { midline, size_mm } => {
                 let [x, z, inclination] = midline[plane];
                 let height = centred(level, self.cells[1], *size_mm);
@@ -229,6 +227,25 @@ impl BrickMesh {
             sums[2] += distance(left, right) / self.cells[2] as f64;
         }
         sums.map(|s| s / samples as f64)
+    }
+
+    /// Which nodes belong to a cell that is not void.
+    #[must_use]
+    pub fn used_nodes(&self) -> Vec<bool> {
+        let mut used = vec![false; self.nodes()];
+        for (cell, _) in self.materials.iter().enumerate().filter(|(_, m)| **m != VOID) {
+            for node in self.cell_nodes(self.cell(cell)) {
+                used[node] = true;
+            }
+        }
+        used
+    }
+
+    /// Largest distance across between the outermost nodes of a plane, mm.
+    #[must_use]
+    pub fn widest(&self) -> f64 {
+        let wide = |i: usize| self.position([i, 0, self.cells[2]])[1] - self.position([i, 0, 0])[1];
+        (0..=self.cells[0]).map(wide).fold(0.0, f64::max)
     }
 
     /// Volume of the cells that are not void, mm^3.
@@ -279,7 +296,10 @@ mod tests {
 
     #[test]
     fn arrays_that_do_not_fit_are_refused() {
-        assert!(matches!(BrickMesh::new([2, 2, 2], vec![0; 7], Geometry::Cubes(1.0)), Err(ConductionError::Size { .. })));
+        assert!(matches!(
+            BrickMesh::new([2, 2, 2], vec![0; 7], Geometry::Cubes(1.0)),
+            Err(ConductionError::Size { .. })
+        ));
         let huge = [usize::MAX, 2, 2];
         assert!(matches!(BrickMesh::new(huge, vec![0; 7], Geometry::Cubes(1.0)), Err(ConductionError::Size { .. })));
     }

@@ -82,9 +82,10 @@ impl Multigrid {
             levels.push(Level { stencil, transfer, largest_eigenvalue });
             elements = Some(coarse);
         }
-        let coarsest = levels.last().map_or_else(|| Dense::new(0, Vec::new()), |level| {
-            Dense::new(level.stencil.inverse_diagonal().len(), level.stencil.dense())
-        });
+        let coarsest = levels.last().map_or_else(
+            || Dense::new(0, Vec::new()),
+            |level| Dense::new(level.stencil.inverse_diagonal().len(), level.stencil.dense()),
+        );
         let mut work = vec![Work::new(mesh.nodes())];
         work.extend(levels.iter().map(|l| Work::new(l.stencil.inverse_diagonal().len())));
         let bricks = mesh.bricks().all();
@@ -99,7 +100,13 @@ impl Multigrid {
     }
 
     /// `out = M^-1 residual`; unless `go_on` says no, which leaves `out` unfinished.
-    pub(super) fn apply(&mut self, operator: &Operator<'_>, residual: &[f64], out: &mut [f64], go_on: &dyn Fn() -> bool) {
+    pub(super) fn apply(
+        &mut self,
+        operator: &Operator<'_>,
+        residual: &[f64],
+        out: &mut [f64],
+        go_on: &dyn Fn() -> bool,
+    ) {
         let Some((own, below)) = self.work.split_first_mut() else { return };
         let apply = |u: &[f64], o: &mut [f64]| operator.apply(u, o);
         let smoother = Chebyshev {

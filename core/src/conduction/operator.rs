@@ -53,7 +53,8 @@ impl<'a> Operator<'a> {
     /// `given` marks the nodes whose value is prescribed.
     #[must_use]
     pub fn new(mesh: &'a BrickMesh, conductivities: &[f64], capacities: &[f64], given: &'a [bool]) -> Self {
-        let value = |m: u16, values: &[f64]| if m == VOID { 0.0 } else { values.get(usize::from(m)).copied().unwrap_or(0.0) };
+        let value =
+            |m: u16, values: &[f64]| if m == VOID { 0.0 } else { values.get(usize::from(m)).copied().unwrap_or(0.0) };
         let conductivity: Vec<f64> = mesh.materials().iter().map(|m| value(*m, conductivities)).collect();
         let per_slice = mesh.cells()[1] * mesh.cells()[2];
         let across = mesh.cells()[2];
@@ -100,18 +101,6 @@ impl<'a> Operator<'a> {
     #[must_use]
     pub fn inverse_diagonal(&self) -> &[f64] {
         &self.inverse_diagonal
-    }
-
-    /// Nodes whose value is given.
-    #[must_use]
-    pub fn given(&self) -> &'a [bool] {
-        self.given
-    }
-
-    /// The lumped capacities over the time step; empty without one.
-    #[must_use]
-    pub fn shift(&self) -> &[f64] {
-        &self.shift
     }
 
     fn cell(&self, i: usize, k: usize, j: usize) -> usize {
@@ -189,9 +178,8 @@ impl<'a> Operator<'a> {
                     let matrix = &self.mesh.bricks().at(i, k, j).conductance;
                     // Rows sum to zero, so a common value may be taken off first: less is lost to rounding.
                     let common = u[nodes[0]];
-                    let flux: f64 = (0..4)
-                        .map(|a| (0..8).map(|b| matrix[8 * a + b] * (u[nodes[b]] - common)).sum::<f64>())
-                        .sum();
+                    let flux: f64 =
+                        (0..4).map(|a| (0..8).map(|b| matrix[8 * a + b] * (u[nodes[b]] - common)).sum::<f64>()).sum();
                     total += kappa * flux;
                 }
             }

@@ -45,9 +45,8 @@ impl Boundary {
     pub fn load_rim(&mut self, mesh: &BrickMesh, total: f64) {
         let [_, layers, across] = mesh.cells();
         let solid = |k: usize, j: usize| mesh.materials()[k * across + j] != VOID;
-        let cells: Vec<[usize; 3]> = (0..layers)
-            .flat_map(|k| (0..across).filter(move |j| solid(k, *j)).map(move |j| [0, k, j]))
-            .collect();
+        let cells: Vec<[usize; 3]> =
+            (0..layers).flat_map(|k| (0..across).filter(move |j| solid(k, *j)).map(move |j| [0, k, j])).collect();
         let area = |cell: &[usize; 3]| {
             let p = mesh.cell_nodes(*cell).map(|n| {
                 let [_, levels, wide] = mesh.node_counts();
@@ -119,7 +118,7 @@ pub struct Steady {
 }
 
 /// How phases of extreme contrast were solved.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 pub struct Apart {
     /// Parts of the conducting phase that touch neither end.
     pub floating: usize,

@@ -23,10 +23,6 @@ impl Stencil {
         Self { nodes, values, inverse_diagonal }
     }
 
-    pub(super) fn nodes(&self) -> [usize; 3] {
-        self.nodes
-    }
-
     pub(super) fn inverse_diagonal(&self) -> &[f64] {
         &self.inverse_diagonal
     }

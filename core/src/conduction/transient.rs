@@ -132,7 +132,7 @@ impl StepView<'_> {
 }
 
 /// Effort of a transient.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 pub struct Effort {
     /// Accepted steps.
     pub steps: usize,

@@ -7,6 +7,7 @@
 //! - [`model`] is the typed result.
 
 pub mod check;
+pub mod conduction;
 pub mod document;
 mod error;
 pub mod files;
@@ -16,6 +17,7 @@ pub mod reference;
 pub mod schema;
 pub mod target_file;
 
+pub use conduction::{ConductionInput, Electrode, ThresholdOf};
 pub use error::{InputError, InputProblem};
 pub use model::{
     DeckKind, DeckSolver, DeckStyle, DecksInput, DesignInput, MaterialsInput, StripsInput, TargetInput, ThrustInput,

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::InputError;
+use super::conduction::ConductionInput;
 use crate::elastica::{HubSupport, ThrustChoice};
 use crate::materials::{Material, library};
 use crate::micromechanics::PhaseSet;
@@ -30,6 +31,9 @@ pub struct DesignInput {
     pub voxels: VoxelsInput,
     /// The decks.
     pub decks: DecksInput,
+    /// Heat and current; absent where the defaults are meant.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub conduction: Option<ConductionInput>,
 }
 
 /// The target of a design.
@@ -350,6 +354,9 @@ impl DesignInput {
             let problem = "C3D8R needs at least four elements through the thickness to bend";
             return Err(InputError::new("decks.graded_elements", format!("{:?}", self.decks.graded_elements), problem)
                 .help("use four or more, or solid_element = \"C3D8I\""));
+        }
+        if let Some(conduction) = &self.conduction {
+            conduction.validate()?;
         }
         let size = self.voxels.size_mm;
         Lattice::new(self.strips.length_mm, self.strips.thickness_mm, size)

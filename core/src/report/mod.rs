@@ -10,6 +10,7 @@
 
 mod cells;
 mod chart;
+pub mod conduction;
 mod error;
 mod figures;
 mod key_numbers;
@@ -22,4 +23,5 @@ pub mod verification;
 
 pub use error::ReportError;
 pub use page::html;
+pub(crate) use text::number;
 pub use verification::{VerificationPicture, verification_svg};
