@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::heat::unit_conductance;
+use super::heat::unit_strip;
 use super::pcg::Watch;
 use super::steady::{self, Boundary, SteadyOptions};
 use super::strip::{Model, Property, Shape, Strip};
@@ -165,7 +165,7 @@ fn mixture(
     boundary.give_plane(mesh, mesh.cells()[0], 0.0);
     let options = SteadyOptions::default();
     let found = steady::solve(mesh, &conductivities, &boundary, &options, Watch::silent())?;
-    let unit = unit_conductance(&strip, Watch::silent())?;
+    let (unit, _) = unit_strip(&strip, Watch::silent())?;
     let slices = design.slices();
     let compliance = slices.iter().map(|s| 1.0 / s.modulus_mpa).sum::<f64>() / slices.len() as f64;
     Ok(Mixture {

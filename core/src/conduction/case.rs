@@ -8,7 +8,7 @@ use super::strip::{Model, Shape, Strip};
 use super::transient::Effort;
 use super::{ConductionError, current, heat};
 use crate::input::ConductionInput;
-use crate::materials::Assumption;
+use crate::materials::{AssumedProperty, Assumption};
 
 /// What flows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -27,6 +27,14 @@ impl Problem {
         match self {
             Self::Heat => ["temperature", "K"],
             Self::Current => ["potential", "V"],
+        }
+    }
+
+    /// The property that its transient may have to assume.
+    fn assumed(self) -> AssumedProperty {
+        match self {
+            Self::Heat => AssumedProperty::SpecificHeat,
+            Self::Current => AssumedProperty::RelativePermittivity,
         }
     }
 }
@@ -49,10 +57,10 @@ pub struct SteadyAnswer {
     pub difference: f64,
     /// Conductivity of the uniform strip of the same shape that lets the same flow through: W/(m K) or S/m.
     pub effective_conductivity: f64,
-    /// Phases side by side and one behind the other, by volume: no arrangement conducts better or worse on a strip of constant
-    /// cross-section.
+    /// No arrangement of the same phases in the same places conducts better (Dirichlet's principle): their mean, weighted with the
+    /// dissipation in the uniform strip. On a strip of constant cross-section that is by volume, phases side by side.
     pub parallel_bound: f64,
-    /// See `parallel_bound`.
+    /// None conducts worse (Thomson's principle): the harmonic mean with the same weights, phases one behind the other.
     pub series_bound: f64,
     /// Largest difference between the flows through neighbouring cross-sections, as a share of the flow.
     pub imbalance: f64,
@@ -187,7 +195,8 @@ pub fn solve(
         measured_at: input.measure_at.clone(),
         steady,
         transient,
-        assumptions: strip.assumptions(),
+        // Steady states need neither capacities nor permittivities.
+        assumptions: if regimes.transient { strip.assumptions(problem.assumed()) } else { Vec::new() },
         notes,
     })
 }
@@ -205,12 +214,13 @@ pub(super) fn at(point: &[(usize, f64)], field: &[f64]) -> f64 {
     point.iter().map(|(node, weight)| weight * field[*node]).sum()
 }
 
-/// Phases side by side and one behind the other.
-pub(super) fn bounds(strip: &Strip, values: &[f64]) -> [f64; 2] {
-    let volumes = strip.mesh.volumes(values.len());
-    let whole: f64 = volumes.iter().sum();
+/// Bounds on the effective conductivity from the field of the uniform strip: the mean and the harmonic mean of the
+/// conductivities, weighted with that field's dissipation.
+pub(super) fn bounds(strip: &Strip, values: &[f64], uniform: &[f64]) -> [f64; 2] {
+    let weights = strip.mesh.dissipations(uniform, values.len());
+    let whole: f64 = weights.iter().sum();
     let mean = |f: &dyn Fn(f64) -> f64| {
-        volumes.iter().zip(values).filter(|(v, _)| **v > 0.0).map(|(v, k)| v / whole * f(*k)).sum::<f64>()
+        weights.iter().zip(values).filter(|(w, _)| **w > 0.0).map(|(w, k)| w / whole * f(*k)).sum::<f64>()
     };
     [mean(&|k| k), 1.0 / mean(&|k| 1.0 / k)]
 }

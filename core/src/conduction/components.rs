@@ -1,5 +1,11 @@
 //! Connected parts of a mesh: cells that share a node conduct to each other.
 
+use super::ConductionError;
+use super::pcg::Watch;
+
+/// Cells after which it is asked whether to go on.
+const ASK_EVERY: usize = 1 << 16;
+
 /// Disjoint sets of nodes.
 #[derive(Debug)]
 pub(super) struct Components {
@@ -11,9 +17,16 @@ pub(super) const NONE: u32 = u32::MAX;
 
 impl Components {
     /// Parts of a mesh of `nodes` nodes; `cells` gives the nodes of every cell that conducts.
-    pub(super) fn new(nodes: usize, cells: impl Iterator<Item = [usize; 8]>) -> Self {
+    pub(super) fn new(
+        nodes: usize,
+        cells: impl Iterator<Item = [usize; 8]>,
+        watch: Watch<'_>,
+    ) -> Result<Self, ConductionError> {
         let mut parts = Self { parent: vec![NONE; nodes] };
-        for cell in cells {
+        for (n, cell) in cells.enumerate() {
+            if n.is_multiple_of(ASK_EVERY) {
+                watch.at(0.0)?;
+            }
             let mut root = parts.touch(cell[0]);
             for node in &cell[1..] {
                 let other = parts.touch(*node);
@@ -28,7 +41,7 @@ impl Components {
                 parts.parent[node] = parts.root(node as u32);
             }
         }
-        parts
+        Ok(parts)
     }
 
     fn touch(&mut self, node: usize) -> u32 {
@@ -60,7 +73,7 @@ mod tests {
     #[test]
     fn cells_that_share_a_node_are_one_part() {
         let cells = [[8, 9, 10, 11, 12, 13, 14, 15], [0, 1, 2, 3, 4, 5, 6, 7], [15, 16, 17, 18, 19, 20, 21, 22]];
-        let parts = Components::new(24, cells.into_iter());
+        let parts = Components::new(24, cells.into_iter(), Watch::silent()).unwrap();
         assert_eq!(parts.roots()[22], 8);
         assert_eq!(parts.roots()[7], 0);
         assert_eq!(parts.roots()[23], NONE);

@@ -48,16 +48,16 @@ pub(super) fn solve(
     };
     let (strong, weaker) = (group(true, most), group(false, weak));
     let stiffened: Vec<f64> = weaker.iter().zip(&strong).map(|(w, s)| if *s > 0.0 { RIGID * s } else { *w }).collect();
-    let parts = Parts::new(mesh, &strong, boundary);
+    let parts = Parts::new(mesh, &strong, boundary, watch)?;
     let ratio = weak / most;
 
     let mut conductor =
-        Conductor { plain: Plain::new(Operator::new(mesh, &strong, &[], &boundary.given)), parts: &parts };
+        Conductor { plain: Plain::new(Operator::new(mesh, &strong, &[], &boundary.given), watch)?, parts: &parts };
     watch.at(0.05)?;
     let weak_operator = Operator::new(mesh, &weaker, &[], &parts.fixed);
     let weights = parts.weights(&weak_operator);
     let mut insulator = Insulator {
-        preconditioner: Plain::new(Operator::new(mesh, &stiffened, &[], &parts.fixed)),
+        preconditioner: Plain::new(Operator::new(mesh, &stiffened, &[], &parts.fixed), watch)?,
         operator: weak_operator,
         parts: &parts,
         weights,
@@ -183,10 +183,10 @@ enum Hold {
 }
 
 impl Parts {
-    fn new(mesh: &BrickMesh, strong: &[f64], boundary: &Boundary) -> Self {
+    fn new(mesh: &BrickMesh, strong: &[f64], boundary: &Boundary, watch: Watch<'_>) -> Result<Self, ConductionError> {
         let conducts = |m: u16| m != VOID && strong[usize::from(m)] > 0.0;
         let cells = mesh.materials().iter().enumerate().filter(|(_, m)| conducts(**m));
-        let components = Components::new(mesh.nodes(), cells.map(|(n, _)| mesh.cell_nodes(mesh.cell(n))));
+        let components = Components::new(mesh.nodes(), cells.map(|(n, _)| mesh.cell_nodes(mesh.cell(n))), watch)?;
         let roots = components.roots().to_vec();
         let mut hold = vec![Hold::Floating; mesh.nodes()];
         for (node, root) in roots.iter().enumerate().filter(|(n, r)| **r != NONE && boundary.given[*n]) {
@@ -204,7 +204,7 @@ impl Parts {
         let is_root = |n: &usize| roots[*n] as usize == *n;
         let floating = (0..mesh.nodes()).filter(is_root).filter(|n| hold[*n] == Hold::Floating).count();
         let percolates = (0..mesh.nodes()).filter(is_root).any(|n| hold[n] == Hold::Through);
-        Self { roots, hold, fixed, floating, percolates }
+        Ok(Self { roots, hold, fixed, floating, percolates })
     }
 
     fn of(&self, node: usize) -> Option<Hold> {

@@ -2,17 +2,18 @@
 //!
 //! Steady: `div(sigma grad phi) = 0`. In time charges gather where conductivities change: `div(sigma grad phi + epsilon d(grad
 //! phi)/dt) = 0`, from no potential at all when the current is switched on at t = 0. A phase relaxes with `epsilon / sigma`: 0.3 ms
-//! at 1e-7 S/m, ten thousand years at 1e-23 S/m; the potential after milliseconds is then that of a conductor between
+//! at 1e-7 S/m, tens of thousands of years at 1e-23 S/m; the potential after milliseconds is then that of a conductor between
 //! perfect dielectrics, which need not be near the steady one.
 
 use super::ConductionError;
 use super::case::{SteadyAnswer, Task, TransientAnswer, at, bounds, crossing};
-use super::heat::{STEP_SOLVER, unit_conductance};
+use super::heat::{STEP_SOLVER, unit_strip};
 use super::pcg::Watch;
 use super::steady::{self, Boundary, Steady, SteadyOptions, plane_nodes};
 use super::strip::Property;
 use super::transient::{Drive, Effort, Storage, Transient, TransientOptions, integrate};
 use crate::input::Electrode;
+use crate::report::number;
 
 /// Conductors between dielectrics relax more slowly than alone: a run may last so many times longer than asked.
 const PATIENCE: f64 = 10.0;
@@ -28,13 +29,14 @@ pub(super) fn solve(
     let share = if task.regimes.transient { 0.3 } else { 1.0 };
     let sigma = task.strip.property(Property::ElectricalConductivity)?;
     let (found, potential) = drive(task, &sigma, watch.part(0.0, 0.5 * share))?;
-    let resistance = unit_resistance(task, watch.part(0.5 * share, share))?;
+    let (resistance, uniform) = unit_resistance(task, watch.part(0.5 * share, share))?;
     let current = task.input.current_a;
     let effective = |potential: f64| 1e3 * resistance * current / potential;
-    let bounds = bounds(task.strip, &sigma).map(|s| 1e3 * s);
+    let bounds = bounds(task.strip, &sigma, &uniform).map(|s| 1e3 * s);
     if potential / task.strip.length_mm > BREAKDOWN_V_MM {
         notes.push(format!(
-            "{potential:.3e} V over {} mm are far beyond what any material stands: read potentials as resistances times {current} A.",
+            "{} V over {} mm are far beyond what any material stands: read potentials as resistances times {current} A.",
+            number(potential, 4),
             task.strip.length_mm
         ));
     }
@@ -49,12 +51,14 @@ pub(super) fn solve(
     let transient = if task.regimes.transient {
         let mut answer = relax(task, &sigma, potential, watch.part(share, 1.0))?;
         let last = answer.history[0].last().copied().unwrap_or(potential);
-        answer.effective_conductivities = vec![Some(effective(last))];
-        if answer.critical_times_s[0].is_none() {
+        if answer.critical_times_s[0].is_some() {
+            answer.effective_conductivities = vec![Some(effective(last))];
+        } else {
             notes.push(format!(
-                "The potential had not come to its plateau after {:.3e} s; it was at {:.3e} of the steady one.",
-                answer.end_s,
-                last / potential
+                "The potential had not come to its plateau after {} s: it was {} V and still rising, the steady one is {} V.",
+                number(answer.end_s, 3),
+                number(last, 4),
+                number(potential, 4)
             ));
         }
         Some(answer)
@@ -103,13 +107,16 @@ fn drive(task: &Task<'_>, sigma: &[f64], watch: Watch<'_>) -> Result<(Steady, f6
     }
 }
 
-/// Resistance of a strip of unit conductivity between the same electrodes, 1/mm.
-fn unit_resistance(task: &Task<'_>, watch: Watch<'_>) -> Result<f64, ConductionError> {
+/// Resistance of a strip of unit conductivity between the same electrodes, 1/mm, and its field.
+fn unit_resistance(task: &Task<'_>, watch: Watch<'_>) -> Result<(f64, Vec<f64>), ConductionError> {
     match task.input.electrode {
-        Electrode::Equipotential => Ok(1.0 / unit_conductance(task.strip, watch)?),
+        Electrode::Equipotential => {
+            unit_strip(task.strip, watch).map(|(conductance, field)| (1.0 / conductance, field))
+        }
         Electrode::Uniform => {
             let ones = vec![1.0; task.strip.mixtures.len()];
-            Ok(drive(task, &ones, watch)?.1 / task.input.current_a)
+            let (found, potential) = drive(task, &ones, watch)?;
+            Ok((potential / task.input.current_a, found.values))
         }
     }
 }
@@ -151,7 +158,7 @@ fn relax(task: &Task<'_>, sigma: &[f64], plateau: f64, watch: Watch<'_>) -> Resu
         times: vec![0.0],
         history: vec![vec![0.0]; task.points.len() + 1],
         critical_times_s: vec![None],
-        effective_conductivities: Vec::new(),
+        effective_conductivities: vec![None],
         field_times_s: Vec::new(),
         fields: Vec::new(),
         end_s: 0.0,

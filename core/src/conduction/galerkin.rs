@@ -13,6 +13,9 @@ use rayon::prelude::*;
 use super::brick::Matrix;
 use super::stencil::Stencil;
 
+/// Cells after which it is asked whether to go on.
+const ASK_EVERY: usize = 1024;
+
 /// What happens to one direction from a level to the next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Step {
@@ -112,8 +115,12 @@ fn mask(matrix: &mut Matrix, given: &[bool], nodes: &[usize; 8]) {
     }
 }
 
-/// The next coarser level's cells.
-pub(super) fn coarsen(fine: &dyn Elements, steps: [Step; 3]) -> CoarseElements {
+/// The next coarser level's cells; `None` where `go_on` says no.
+pub(super) fn coarsen(
+    fine: &dyn Elements,
+    steps: [Step; 3],
+    go_on: &(dyn Fn() -> bool + Sync),
+) -> Option<CoarseElements> {
     let (fine_cells, fine_nodes) = (fine.cells(), fine.nodes());
     let cells: [usize; 3] = std::array::from_fn(|d| match steps[d] {
         Step::Halve => fine_cells[d].div_ceil(2),
@@ -127,6 +134,9 @@ pub(super) fn coarsen(fine: &dyn Elements, steps: [Step; 3]) -> CoarseElements {
         Step::Keep | Step::Collapse => c..c + 1,
     };
     let one = |n: usize| {
+        if n.is_multiple_of(ASK_EVERY) && !go_on() {
+            return None;
+        }
         let cell = [n / (cells[1] * cells[2]), n / cells[2] % cells[1], n % cells[2]];
         let mut sum = [0.0; 64];
         let mut matrix = [0.0; 64];
@@ -138,8 +148,8 @@ pub(super) fn coarsen(fine: &dyn Elements, steps: [Step; 3]) -> CoarseElements {
                         continue;
                     }
                     mask(&mut matrix, fine.given(), &cell_nodes(fine_nodes, child));
-                    for d in 0..3 {
-                        project(&mut matrix, d, steps[d], child[d] % 2);
+                    for (d, step) in steps.into_iter().enumerate() {
+                        project(&mut matrix, d, step, child[d] % 2);
                     }
                     for (s, m) in sum.iter_mut().zip(&matrix) {
                         *s += m;
@@ -148,10 +158,11 @@ pub(super) fn coarsen(fine: &dyn Elements, steps: [Step; 3]) -> CoarseElements {
             }
         }
         mask(&mut sum, &given, &cell_nodes(nodes, cell));
-        sum
+        Some(sum)
     };
-    let matrices = (0..cells.iter().product()).into_par_iter().with_min_len(64).map(one).collect();
-    CoarseElements { cells, collapsed, given, matrices }
+    let many = 0..cells.iter().product();
+    let matrices = many.into_par_iter().with_min_len(64).map(one).collect::<Option<Vec<Matrix>>>()?;
+    Some(CoarseElements { cells, collapsed, given, matrices })
 }
 
 /// A coarse node is given where the fine node it sits on is.

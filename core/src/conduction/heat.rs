@@ -29,14 +29,15 @@ pub(super) fn solve(
     Ok((steady, transient))
 }
 
-/// Flux through a strip of unit conductivity whose ends differ by one, mm.
-pub(super) fn unit_conductance(strip: &Strip, watch: Watch<'_>) -> Result<f64, ConductionError> {
+/// Flux through a strip of unit conductivity whose ends differ by one, mm, and the field.
+pub(super) fn unit_strip(strip: &Strip, watch: Watch<'_>) -> Result<(f64, Vec<f64>), ConductionError> {
     let mesh = &strip.mesh;
     let mut boundary = Boundary::insulated(mesh);
     boundary.give_plane(mesh, 0, 1.0);
     boundary.give_plane(mesh, mesh.cells()[0], 0.0);
     let ones = vec![1.0; strip.mixtures.len()];
-    Ok(steady::solve(mesh, &ones, &boundary, &SteadyOptions::default(), watch)?.slice_flux[0])
+    let found = steady::solve(mesh, &ones, &boundary, &SteadyOptions::default(), watch)?;
+    Ok((found.slice_flux[0], found.values))
 }
 
 fn steady(task: &Task<'_>, watch: Watch<'_>) -> Result<SteadyAnswer, ConductionError> {
@@ -48,8 +49,9 @@ fn steady(task: &Task<'_>, watch: Watch<'_>) -> Result<SteadyAnswer, ConductionE
     let found = steady::solve(mesh, &conductivities, &boundary, &SteadyOptions::default(), watch.part(0.0, 0.5))?;
     let difference = input.rim_temperature_k - input.start_temperature_k;
     let flow = found.slice_flux[0];
-    let effective = flow / (difference * unit_conductance(task.strip, watch.part(0.5, 1.0))?);
-    let bounds = bounds(task.strip, &conductivities).map(|k| 1e3 * k);
+    let (conductance, uniform) = unit_strip(task.strip, watch.part(0.5, 1.0))?;
+    let effective = flow / (difference * conductance);
+    let bounds = bounds(task.strip, &conductivities, &uniform).map(|k| 1e3 * k);
     Ok(SteadyAnswer::new(found, [flow, difference], 1e3 * effective, bounds, task.points))
 }
 

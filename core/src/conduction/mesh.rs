@@ -248,6 +248,25 @@ impl BrickMesh {
         (0..=self.cells[0]).map(wide).fold(0.0, f64::max)
     }
 
+    /// `int (grad u)^2 dV` over the cells of every material; at least `materials` entries.
+    #[must_use]
+    pub fn dissipations(&self, u: &[f64], materials: usize) -> Vec<f64> {
+        let mut sums = vec![0.0; materials];
+        for (n, material) in self.materials.iter().enumerate().filter(|(_, m)| **m != VOID) {
+            let [i, k, j] = self.cell(n);
+            let values = self.cell_nodes([i, k, j]).map(|node| u[node]);
+            let matrix = &self.bricks.at(i, k, j).conductance;
+            let m = usize::from(*material);
+            if m >= sums.len() {
+                sums.resize(m + 1, 0.0);
+            }
+            for (row, v) in matrix.chunks(8).zip(&values) {
+                sums[m] += v * row.iter().zip(&values).map(|(k, u)| k * u).sum::<f64>();
+            }
+        }
+        sums
+    }
+
     /// Volume of the cells that are not void, mm^3.
     #[must_use]
     pub fn volume(&self) -> f64 {

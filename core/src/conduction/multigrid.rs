@@ -53,9 +53,9 @@ impl Work {
 }
 
 impl Multigrid {
-    /// Builds the levels below `operator`.
+    /// Builds the levels below `operator`; `None` where `go_on` says no.
     #[must_use]
-    pub fn new(operator: &Operator<'_>) -> Self {
+    pub fn new(operator: &Operator<'_>, go_on: &(dyn Fn() -> bool + Sync)) -> Option<Self> {
         let mesh = operator.mesh();
         let largest = |n: &super::brick::Brick| n.largest_scaled_eigenvalue();
         let mut edges = mesh.mean_edges();
@@ -70,7 +70,7 @@ impl Multigrid {
                 break;
             }
             let Some(chosen) = steps(fine.cells(), fine.collapsed(), edges) else { break };
-            let coarse = coarsen(fine, chosen);
+            let coarse = coarsen(fine, chosen, go_on)?;
             let stencil = coarse.stencil();
             let transfer = Transfer::new(fine.nodes(), coarse.nodes(), chosen);
             for (edge, step) in edges.iter_mut().zip(chosen) {
@@ -90,7 +90,7 @@ impl Multigrid {
         work.extend(levels.iter().map(|l| Work::new(l.stencil.inverse_diagonal().len())));
         let bricks = mesh.bricks().all();
         let largest_eigenvalue = bricks.iter().map(largest).fold(1.0, f64::max);
-        Self { levels, largest_eigenvalue, coarsest, work }
+        Some(Self { levels, largest_eigenvalue, coarsest, work })
     }
 
     /// Number of levels, the finest included.
@@ -232,33 +232,28 @@ impl Chebyshev<'_> {
 /// Largest eigenvalue of `D^-1 A`, slightly over-estimated.
 fn power_iteration(stencil: &Stencil) -> f64 {
     let inverse = stencil.inverse_diagonal();
-    let n = inverse.len();
     // Any start with all frequencies in it; the same on every machine.
     let mut state = 0x9E37_79B9_u32;
-    let mut v: Vec<f64> = (0..n)
-        .map(|i| {
+    let mut v: Vec<f64> = inverse
+        .iter()
+        .map(|d| {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            if inverse[i] == 0.0 { 0.0 } else { f64::from(state >> 8) / f64::from(1 << 24) - 0.5 }
+            if *d == 0.0 { 0.0 } else { f64::from(state >> 8) / f64::from(1 << 24) - 0.5 }
         })
         .collect();
-    let mut product = vec![0.0; n];
+    let mut product = vec![0.0; inverse.len()];
     let mut largest = 1.0_f64;
     for _ in 0..15 {
         stencil.apply(&v, &mut product);
-        let (mut energy, mut mass) = (0.0, 0.0);
-        for i in 0..n {
-            energy += v[i] * product[i];
-            if inverse[i] > 0.0 {
-                mass += v[i] * v[i] / inverse[i];
-            }
-        }
+        let energy: f64 = v.iter().zip(&product).map(|(v, p)| v * p).sum();
+        let mass: f64 = v.iter().zip(inverse).filter(|(_, d)| **d > 0.0).map(|(v, d)| v * v / d).sum();
         if mass <= 0.0 {
             return 1.0;
         }
         largest = largest.max(energy / mass);
         let scale = 1.0 / mass.sqrt();
-        for i in 0..n {
-            v[i] = inverse[i] * product[i] * scale;
+        for ((v, d), p) in v.iter_mut().zip(inverse).zip(&product) {
+            *v = d * p * scale;
         }
     }
     1.15 * largest
@@ -313,8 +308,8 @@ impl Dense {
         }
         for i in (0..n).rev() {
             let x = out[i];
-            for k in 0..i {
-                out[k] -= self.factor[i * n + k] * x;
+            for (o, l) in out[..i].iter_mut().zip(&self.factor[i * n..]) {
+                *o -= l * x;
             }
         }
     }

@@ -209,12 +209,12 @@ impl<'a> Operator<'a> {
             add_near(kappa, &pick(first_corner), [u0, u1, u2, u3], &mut out[..n]);
             add_near(kappa, &pick(first_corner + 1), [u0, u1, u2, u3], &mut out[1..]);
         } else {
-            for j in 0..n {
+            for (j, kappa) in kappa.iter().enumerate() {
                 let matrix = &self.mesh.bricks().at(i, k, first + j).conductance;
                 let values = [u0[j], u0[j + 1], u1[j], u1[j + 1], u2[j], u2[j + 1], u3[j], u3[j + 1]];
                 let dot = |row: usize| (0..8).map(|b| matrix[8 * row + b] * values[b]).sum::<f64>();
-                out[j] += kappa[j] * dot(first_corner);
-                out[j + 1] += kappa[j] * dot(first_corner + 1);
+                out[j] += kappa * dot(first_corner);
+                out[j + 1] += kappa * dot(first_corner + 1);
             }
         }
     }
@@ -224,10 +224,10 @@ impl<'a> Operator<'a> {
 fn add_near(kappa: &[f64], m: &[f64; 8], [u0, u1, u2, u3]: [&[f64]; 4], out: &mut [f64]) {
     let n = kappa.len();
     let (out, u0, u1, u2, u3) = (&mut out[..n], &u0[..=n], &u1[..=n], &u2[..=n], &u3[..=n]);
-    for j in 0..n {
+    for (j, (o, kappa)) in out.iter_mut().zip(kappa).enumerate() {
         let even = m[0] * u0[j] + m[2] * u1[j] + m[4] * u2[j] + m[6] * u3[j];
         let odd = m[1] * u0[j + 1] + m[3] * u1[j + 1] + m[5] * u2[j + 1] + m[7] * u3[j + 1];
-        out[j] += kappa[j] * (even + odd);
+        *o += kappa * (even + odd);
     }
 }
 

@@ -31,6 +31,12 @@ impl Watch<'_> {
         Self { progress: self.progress, span: [at(from), at(to)] }
     }
 
+    /// Whether to go on, asked without progress.
+    #[must_use]
+    pub fn goes_on(&self) -> bool {
+        (self.progress)(self.span[0])
+    }
+
     /// Reports a share of this piece of work.
     ///
     /// # Errors
@@ -108,21 +114,17 @@ pub(super) fn solve(
     watch: Watch<'_>,
 ) -> Result<(Iterations, bool), ConductionError> {
     let n = b.len();
-    let go_on = || (watch.progress)(watch.span[0]);
+    let go_on = || watch.goes_on();
     let (mut r, mut z) = (b.to_vec(), vec![0.0; n]);
     let mut product = vec![0.0; n];
-    let scale = match scale {
-        Some(scale) => scale,
-        None => {
-            system.precondition(b, &mut z, &go_on);
-            dot(b, &z)
-        }
-    };
-    if u.iter().any(|v| *v != 0.0) {
+    let from_zero = u.iter().all(|v| *v == 0.0);
+    if from_zero || scale.is_none() {
+        system.precondition(b, &mut z, &go_on);
+    }
+    let scale = scale.unwrap_or_else(|| dot(b, &z));
+    if !from_zero {
         system.apply(u, &mut product);
         combine(-1.0, &product, 1.0, &mut r);
-        system.precondition(&r, &mut z, &go_on);
-    } else {
         system.precondition(&r, &mut z, &go_on);
     }
     watch.at(0.0)?;

@@ -12,7 +12,7 @@ use super::{ConductionError, memory};
 pub const LARGEST_CONTRAST: f64 = 1e4;
 
 /// Largest share by which the flux through cross-sections may differ.
-const BALANCE: f64 = 1e-5;
+const BALANCE: f64 = 1e-4;
 
 /// What is prescribed at the nodes of a mesh.
 #[derive(Debug, Clone, PartialEq)]
@@ -94,7 +94,7 @@ pub struct SteadyOptions {
 
 impl Default for SteadyOptions {
     fn default() -> Self {
-        Self { tolerance: Tolerance { relative: 1e-8, iterations: 500 }, memory: None, quantity: "temperature" }
+        Self { tolerance: Tolerance { relative: 1e-9, iterations: 500 }, memory: None, quantity: "temperature" }
     }
 }
 
@@ -144,7 +144,7 @@ pub fn solve(
     check(mesh, boundary)?;
     memory::require(mesh, options.memory)?;
     let present = present(mesh, conductivities)?;
-    refuse_isolated(mesh, conductivities, &boundary.given, options.quantity)?;
+    refuse_isolated(mesh, conductivities, &boundary.given, options.quantity, watch)?;
     let (least, most) = (present[0], present[present.len() - 1]);
     let mut steady = if most / least <= LARGEST_CONTRAST {
         together(mesh, conductivities, [least, most], boundary, options, watch)?
@@ -194,10 +194,11 @@ fn refuse_isolated(
     conductivities: &[f64],
     given: &[bool],
     quantity: &'static str,
+    watch: Watch<'_>,
 ) -> Result<(), ConductionError> {
     let conducts = |m: u16| m != VOID && conductivities[usize::from(m)] > 0.0;
     let cells = || mesh.materials().iter().enumerate().filter(|(_, m)| conducts(**m)).map(|(n, _)| mesh.cell(n));
-    let parts = Components::new(mesh.nodes(), cells().map(|c| mesh.cell_nodes(c)));
+    let parts = Components::new(mesh.nodes(), cells().map(|c| mesh.cell_nodes(c)), watch)?;
     let roots = parts.roots();
     let mut held = vec![false; mesh.nodes()];
     for (node, root) in roots.iter().enumerate() {
@@ -219,9 +220,9 @@ pub(super) struct Plain<'a> {
 }
 
 impl<'a> Plain<'a> {
-    pub(super) fn new(operator: Operator<'a>) -> Self {
-        let multigrid = Multigrid::new(&operator);
-        Self { operator, multigrid }
+    pub(super) fn new(operator: Operator<'a>, watch: Watch<'_>) -> Result<Self, ConductionError> {
+        let multigrid = Multigrid::new(&operator, &|| watch.goes_on()).ok_or(ConductionError::Cancelled)?;
+        Ok(Self { operator, multigrid })
     }
 }
 
@@ -245,8 +246,7 @@ fn together(
     watch: Watch<'_>,
 ) -> Result<Steady, ConductionError> {
     let scaled: Vec<f64> = conductivities.iter().map(|k| k / most).collect();
-    let mut system = Plain::new(Operator::new(mesh, &scaled, &[], &boundary.given));
-    watch.at(0.0)?;
+    let mut system = Plain::new(Operator::new(mesh, &scaled, &[], &boundary.given), watch)?;
     let mut values = boundary.values.clone();
     let mut load = vec![0.0; mesh.nodes()];
     system.operator.apply(&values, &mut load);

@@ -63,8 +63,8 @@ impl Stencil {
             unit[j] = 1.0;
             self.apply(&unit, &mut column);
             unit[j] = 0.0;
-            for i in 0..n {
-                matrix[i * n + j] = column[i];
+            for (i, value) in column.iter().enumerate() {
+                matrix[i * n + j] = *value;
             }
         }
         matrix

@@ -6,7 +6,7 @@ use super::mesh::{BrickMesh, Geometry, VOID};
 use super::{ConductionError, memory};
 use crate::design::Design;
 use crate::elastica::forward::Equilibrium;
-use crate::materials::{Assumption, Material, assumptions};
+use crate::materials::{AssumedProperty, Assumption, Material, assumptions};
 
 /// Which strip conducts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -136,11 +136,12 @@ impl Strip {
             .collect()
     }
 
-    /// What is assumed about the phases that are present.
+    /// What is assumed about a property of the phases that are present.
     #[must_use]
-    pub fn assumptions(&self) -> Vec<Assumption> {
+    pub fn assumptions(&self, property: AssumedProperty) -> Vec<Assumption> {
         let used = self.used();
-        self.phases.iter().zip(&used).filter(|(_, used)| **used).flat_map(|(p, _)| assumptions(p)).collect()
+        let present = self.phases.iter().zip(&used).filter(|(_, used)| **used);
+        present.flat_map(|(p, _)| assumptions(p)).filter(|a| a.property == property).collect()
     }
 
     /// Nodes and weights that give the value on the mid-line at a share of the length from the rim.

@@ -110,8 +110,9 @@ impl StepView<'_> {
     #[must_use]
     pub fn field(&self, time: f64) -> Vec<f64> {
         let w = self.weights(time);
-        let [a, b, c] = self.values;
-        a.iter().zip(b).zip(c).map(|((a, b), c)| w[0] * a + w[1] * b + w[2] * c).collect()
+        let mut field = vec![0.0; self.values[0].len()];
+        blend(w, self.values, &mut field);
+        field
     }
 
     /// The field at its end.
@@ -191,17 +192,13 @@ pub fn integrate(
         residual(&middle, &mut force_middle);
 
         let c = 1.0 / (G * (2.0 - G));
-        for i in 0..n {
-            load[i] = c * force_middle[i] - (c - 1.0) * force[i];
-            end[i] = c * middle[i] - (c - 1.0) * start[i];
-        }
+        blend([1.0 - c, c, 0.0], [&force, &force_middle, &force_end], &mut load);
+        blend([1.0 - c, c, 0.0], [&start, &middle, &start], &mut end);
         system.solve(&load, &mut change, options.solver, &mut effort, now)?;
         combine(1.0, &change, 1.0, &mut end);
         residual(&end, &mut force_end);
 
-        for i in 0..n {
-            load[i] = (ERROR[0] * force[i] + ERROR[1] * force_middle[i] + ERROR[2] * force_end[i]) / D;
-        }
+        blend(ERROR.map(|e| e / D), [&force, &force_middle, &force_end], &mut load);
         let loose = Tolerance { relative: 1e-2, ..options.solver };
         system.solve(&load, &mut change, loose, &mut effort, now)?;
         let largest = |v: &[f64]| v.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
@@ -228,6 +225,13 @@ pub fn integrate(
         }
     }
     Ok(effort)
+}
+
+/// `out = sum of w_i v_i`.
+fn blend(w: [f64; 3], [a, b, c]: [&[f64]; 3], out: &mut [f64]) {
+    for (((o, a), b), c) in out.iter_mut().zip(a).zip(b).zip(c) {
+        *o = w[0] * a + w[1] * b + w[2] * c;
+    }
 }
 
 /// The system of one step size.
@@ -270,8 +274,7 @@ impl<'a> Stage<'a> {
             }
         };
         let operator = Operator::new(mesh, &conductivities, &capacities, &problem.boundary.given);
-        let mut system = Plain::new(operator);
-        watch.at(0.0)?;
+        let mut system = Plain::new(operator, watch)?;
         let electrode = match problem.drive {
             Drive::Boundary => None,
             Drive::Electrode => {

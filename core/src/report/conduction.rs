@@ -71,7 +71,9 @@ pub struct FieldPicture {
 pub fn field_svg(picture: &FieldPicture) -> Result<String, ReportError> {
     let [length, width] = picture.size_mm;
     let room = WIDTH - 12.0 - BAR[1] - 24.0;
-    let high = (room * width / length).clamp(12.0, 320.0);
+    // One scale for both directions, unless the strip is too slender to be seen.
+    let scale = (room / length).min(320.0 / width);
+    let (wide, high) = (scale * length, (scale * width).max(12.0));
     let step = HEADING + high + 22.0;
     let caption = wrapped(&picture.caption);
     let height = HEAD + step * picture.panels.len() as f64 + FOOT + LINE * caption.len() as f64;
@@ -82,17 +84,17 @@ pub fn field_svg(picture: &FieldPicture) -> Result<String, ReportError> {
         svg.text([12.0, top + 14.0], Anchor::Start, 12.5, INK, &panel.heading);
         let image = image(picture.cells, panel).map_err(|problem| ReportError::Chart { figure: "field", problem })?;
         svg.raw(&format!(
-            "<image x=\"12\" y=\"{:.2}\" width=\"{room:.2}\" height=\"{high:.2}\" preserveAspectRatio=\"none\" \
+            "<image x=\"12\" y=\"{:.2}\" width=\"{wide:.2}\" height=\"{high:.2}\" preserveAspectRatio=\"none\" \
              style=\"image-rendering:pixelated\" href=\"data:image/png;base64,{}\"/>",
             top + HEADING,
             STANDARD.encode(image)
         ));
-        colour_bar(&mut svg, [room + 30.0, top + HEADING], high, panel.range, &picture.unit);
+        colour_bar(&mut svg, [wide + 30.0, top + HEADING], high, panel.range, &picture.unit);
     }
     let below = HEAD + step * picture.panels.len() as f64;
     svg.text([12.0, below + 4.0], Anchor::Start, 12.0, MUTED, "rim");
     let far = format!("far end, {} mm", number(length, 4));
-    svg.text([12.0 + room, below + 4.0], Anchor::End, 12.0, MUTED, &far);
+    svg.text([12.0 + wide, below + 4.0], Anchor::End, 12.0, MUTED, &far);
     write_lines(&mut svg, [12.0, below + 30.0], &caption);
     Ok(svg.standalone(&picture.title))
 }

@@ -194,10 +194,10 @@ pub(super) fn ashby(chart: &Ashby) -> Result<String, ReportError> {
         outlines,
         caption: vec![
             "Coupons of 20 × 6 × 2 mm, voxels of 0.5 mm, nine fractions a pattern. Modulus by Voigt’s rule in every slice, \
-             conductivity by steady flow along the coupon."
+             conductivity by steady flow along the coupon. Patterns that line up along it coincide."
                 .to_owned(),
             "Light: between Reuss (series) and Voigt (parallel) at equal fractions; darker: between Hashin and Shtrikman’s bounds \
-             for isotropic mixtures."
+             for isotropic mixtures. Voigt’s rule overstates the modulus of random mixtures: they belong further left."
                 .to_owned(),
         ],
     };
