@@ -36,6 +36,8 @@ pub enum Command {
     Verify(VerifyOptions),
     /// Make the files to print, cut and assemble a design.
     Fabricate(FabricateOptions),
+    /// Let heat and current through a design's strip: fields, effective conductivities, pictures.
+    Conduct(Box<ConductOptions>),
     /// List the materials of the library.
     Materials,
     /// List the kinds of targets and the built-in examples, or print one of them.
@@ -93,6 +95,132 @@ pub struct FabricateOptions {
     /// Do it even if there are very many voxels or the disk seems too small.
     #[arg(long)]
     pub yes: bool,
+}
+
+/// Options of `conduct`. What is not given is what the design's [conduction] table says.
+#[derive(Debug, Args)]
+pub struct ConductOptions {
+    /// Folder that `design` wrote.
+    pub folder: PathBuf,
+    /// What flows.
+    #[arg(long, value_enum, default_value_t = Flow::Both)]
+    pub flow: Flow,
+    /// The state in the long run, the way there, or both.
+    #[arg(long, value_enum, default_value_t = Regime::Both)]
+    pub regime: Regime,
+    /// Every voxel its phase, or the smooth strip with the designed mixture.
+    #[arg(long, value_enum, default_value_t = ConductModel::Voxel)]
+    pub model: ConductModel,
+    /// As printed, or at the end of the morph.
+    #[arg(long, value_enum, default_value_t = ConductShape::Flat)]
+    pub shape: ConductShape,
+    /// Temperature of the rim, K.
+    #[arg(long, value_name = "K")]
+    pub rim_temperature: Option<f64>,
+    /// Temperature of the rest at the start, K.
+    #[arg(long, value_name = "K")]
+    pub start_temperature: Option<f64>,
+    /// Current that enters at the rim, A.
+    #[arg(long, value_name = "A")]
+    pub current: Option<f64>,
+    /// How it enters.
+    #[arg(long, value_enum)]
+    pub electrode: Option<ElectrodeChoice>,
+    /// Times of temperature fields, s, separated by commas.
+    #[arg(long, value_name = "S,...", value_delimiter = ',')]
+    pub heat_times: Option<Vec<f64>>,
+    /// Times of potential fields, s, separated by commas.
+    #[arg(long, value_name = "S,...", value_delimiter = ',')]
+    pub current_times: Option<Vec<f64>>,
+    /// Measuring points on the mid-line as shares of the length from the rim, separated by commas.
+    #[arg(long, value_name = "SHARE,...", value_delimiter = ',')]
+    pub measure_at: Option<Vec<f64>>,
+    /// Share of the final temperature at the critical time.
+    #[arg(long, value_name = "SHARE")]
+    pub threshold: Option<f64>,
+    /// What that is a share of.
+    #[arg(long, value_enum)]
+    pub threshold_of: Option<ThresholdChoice>,
+    /// Share off the steady potential that counts as its plateau.
+    #[arg(long, value_name = "SHARE")]
+    pub plateau: Option<f64>,
+    /// Largest error of a time step as a share of the rise.
+    #[arg(long, value_name = "SHARE")]
+    pub time_tolerance: Option<f64>,
+    /// Also draw modulus against conductivity for mixtures of the phases in every pattern.
+    #[arg(long)]
+    pub ashby: bool,
+    /// Write no fields for ParaView.
+    #[arg(long)]
+    pub no_vtu: bool,
+    /// Folder to write into [default: the design's].
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    /// Write even if the disk seems too small.
+    #[arg(long)]
+    pub yes: bool,
+}
+
+/// What flows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Flow {
+    /// Heat.
+    Heat,
+    /// Current.
+    Current,
+    /// One after the other.
+    Both,
+}
+
+/// What of it is computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Regime {
+    /// The state in the long run.
+    Steady,
+    /// The way there.
+    Transient,
+    /// Both.
+    Both,
+}
+
+/// Strips that conduct.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ConductModel {
+    /// Every voxel its phase.
+    Voxel,
+    /// Smooth width, designed mixture.
+    Graded,
+    /// Both.
+    Both,
+}
+
+/// Shapes in which they conduct.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ConductShape {
+    /// As printed.
+    Flat,
+    /// At the end of the morph.
+    Morphed,
+    /// Both.
+    Both,
+}
+
+/// How current enters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ElectrodeChoice {
+    /// Through a contact of one potential.
+    Equipotential,
+    /// With one density over the cross-section.
+    Uniform,
+}
+
+/// What a threshold is a share of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ThresholdChoice {
+    /// The rise from the start.
+    Rise,
+    /// The absolute temperature.
+    Value,
 }
 
 /// Options of `targets`.

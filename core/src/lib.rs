@@ -48,6 +48,7 @@
 //! Units are mm, N, MPa, tonne, s, K; angles are radians here and degrees in files. The method is that of Kansara, Liu, He
 //! and Tan, J. Mech. Phys. Solids (2023); `docs/theory.md` derives it.
 
+pub mod conduction;
 pub mod deck;
 pub mod design;
 pub mod elastica;

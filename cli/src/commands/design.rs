@@ -6,6 +6,7 @@ use voxelastica_core::input::TargetInput;
 use voxelastica_core::output::write::{OutputKind, WriteOptions, Written, write_outputs};
 use voxelastica_core::{Design, DesignInput, Error, Limits};
 
+use super::figures;
 use crate::args::DesignOptions;
 use crate::console::{Console, WRITING};
 
@@ -80,18 +81,5 @@ fn report(design: &Design, written: &Written, console: &Console) {
     console.say(format!("voxels    {} a strip: {}", summary.voxels_per_spoke, voxels.join(", ")));
     if let Some(error) = summary.predicted_error_percent {
         console.say(format!("predicted {} % of the length off the target", figures(error)));
-    }
-}
-
-/// A number with four significant digits.
-fn figures(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return "0".to_owned();
-    }
-    let magnitude = value.abs().log10().floor() as i32;
-    if (-4..6).contains(&magnitude) {
-        format!("{value:.*}", usize::try_from(3 - magnitude).unwrap_or(0))
-    } else {
-        format!("{value:.3e}")
     }
 }

@@ -1,5 +1,6 @@
 //! The subcommands.
 
+pub mod conduct;
 pub mod design;
 pub mod fabricate;
 pub mod lists;
@@ -18,4 +19,19 @@ fn designed(folder: &Path) -> Result<Design, Error> {
     }
     Design::compute(&DesignInput::read(&path)?, Limits { allow_large: true })
         .map_err(|error| error.in_file(&path.display().to_string()))
+}
+
+/// A number with four significant digits.
+pub fn figures(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return "0".to_owned();
+    }
+    // Rounded first, so that 0.99999 counts as 1.
+    let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
+    let magnitude = rounded.abs().log10().floor() as i32;
+    if (-4..6).contains(&magnitude) {
+        format!("{value:.*}", usize::try_from(3 - magnitude).unwrap_or(0))
+    } else {
+        format!("{value:.3e}")
+    }
 }

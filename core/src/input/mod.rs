@@ -7,6 +7,7 @@
 //! - [`model`] is the typed result.
 
 pub mod check;
+pub mod conduction;
 pub mod document;
 mod error;
 pub mod fabrication;
@@ -17,6 +18,7 @@ pub mod reference;
 pub mod schema;
 pub mod target_file;
 
+pub use conduction::{ConductionInput, Electrode, ThresholdOf};
 pub use error::{InputError, InputProblem};
 pub use fabrication::{FabricationInput, FabricationKind, PrintSource, Printer, Scope, ThreeMfGeometry};
 pub use model::{

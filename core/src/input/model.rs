@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::InputError;
+use super::conduction::ConductionInput;
 use super::fabrication::FabricationInput;
 use crate::elastica::{HubSupport, ThrustChoice};
 use crate::materials::{Material, library};
@@ -34,6 +35,9 @@ pub struct DesignInput {
     /// The files to make the thing; absent where the design file says nothing about them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fabrication: Option<FabricationInput>,
+    /// Heat and current; absent where the defaults are meant.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub conduction: Option<ConductionInput>,
 }
 
 /// The target of a design.
@@ -365,6 +369,9 @@ impl DesignInput {
         }
         if let Some(fabrication) = &self.fabrication {
             fabrication.validate()?;
+        }
+        if let Some(conduction) = &self.conduction {
+            conduction.validate()?;
         }
         let size = self.voxels.size_mm;
         Lattice::new(self.strips.length_mm, self.strips.thickness_mm, size)

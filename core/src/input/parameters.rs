@@ -2,6 +2,7 @@
 //!
 //! Checks, JSON Schema, the reference in `docs/design-file.md` and the forms of host programs are all made from it.
 
+mod conduction;
 mod fabrication;
 
 use serde::Serialize;
@@ -111,24 +112,39 @@ const fn between(least: f64, most: f64) -> Kind {
 const BASE: Parameter =
     Parameter { key: "", kind: Kind::Text, unit: None, default: None, required: false, targets: &[], description: "" };
 
+/// Keys by subject, in the order in which a design file is read.
+const GROUPS: [&[Parameter]; 3] = [DESIGN, conduction::CONDUCTION, fabrication::FABRICATION];
+
 /// Number of keys.
-const COUNT: usize = DESIGN.len() + fabrication::FABRICATION.len();
+const COUNT: usize = {
+    let (mut count, mut group) = (0, 0);
+    while group < GROUPS.len() {
+        count += GROUPS[group].len();
+        group += 1;
+    }
+    count
+};
 
 /// All keys, in the order in which a design file is read.
 pub const PARAMETERS: &[Parameter] = &all();
 
 const fn all() -> [Parameter; COUNT] {
     let mut all = [BASE; COUNT];
-    let mut i = 0;
-    while i < COUNT {
-        all[i] = if i < DESIGN.len() { DESIGN[i] } else { fabrication::FABRICATION[i - DESIGN.len()] };
-        i += 1;
+    let (mut next, mut group) = (0, 0);
+    while group < GROUPS.len() {
+        let mut i = 0;
+        while i < GROUPS[group].len() {
+            all[next] = GROUPS[group][i];
+            next += 1;
+            i += 1;
+        }
+        group += 1;
     }
     all
 }
 
 /// Tables that a design has only where its file has them, so that their defaults change no other design.
-pub const OPTIONAL_TABLES: [&str; 1] = ["fabrication"];
+pub const OPTIONAL_TABLES: [&str; 2] = ["conduction", "fabrication"];
 
 /// Keys of the design itself.
 const DESIGN: &[Parameter] = &[
@@ -337,6 +353,12 @@ const DESIGN: &[Parameter] = &[
         kind: length(1e9),
         unit: Some("S/m"),
         description: "Electrical conductivity.",
+        ..BASE
+    },
+    Parameter {
+        key: "materials.custom.relative_permittivity",
+        kind: between(1.0, 1e6),
+        description: "Permittivity relative to that of vacuum.",
         ..BASE
     },
     Parameter {

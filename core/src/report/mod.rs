@@ -10,6 +10,7 @@
 
 mod cells;
 mod chart;
+pub mod conduction;
 mod error;
 mod figures;
 mod key_numbers;
@@ -22,7 +23,7 @@ pub mod verification;
 
 pub use error::ReportError;
 pub use page::html;
-pub(crate) use text::escape;
+pub(crate) use text::{escape, number};
 pub use verification::{VerificationPicture, verification_svg};
 
 /// The colour of one of `count` phases, softest first: red, green, blue, the same in pictures and in printed files.
