@@ -2,4 +2,5 @@
 
 pub mod design;
 pub mod lists;
+pub mod micromechanics;
 pub mod verify;

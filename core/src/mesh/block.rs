@@ -42,11 +42,11 @@ pub struct Block {
 }
 
 impl Block {
-    /// A block of equally long slices. `across` and `layers` must be even for the mid-line to have nodes, and
-    /// [`Spacing::Width`] must have one width a plane.
+    /// A block of equally long slices. [`Spacing::Width`] must have one width a plane; only where `across` and `layers` are
+    /// even does the mid-line have nodes.
     #[must_use]
     pub fn new(length: f64, thickness: f64, layers: usize, across: Vec<usize>, spacing: Spacing) -> Self {
-        debug_assert!(!across.is_empty() && layers.is_multiple_of(2) && across.iter().all(|n| n.is_multiple_of(2)));
+        debug_assert!(!across.is_empty());
         let mut block = Self {
             length,
             thickness,
@@ -136,6 +136,7 @@ impl Block {
     /// Node of the mid-line in a plane.
     #[must_use]
     pub fn midline_node(&self, plane: usize) -> u64 {
+        debug_assert!(self.layers.is_multiple_of(2) && self.plane_across(plane).is_multiple_of(2));
         let across = self.plane_across(plane) as u64;
         self.plane_nodes[plane] + (self.layers as u64 / 2) * (across + 1) + across / 2
     }

@@ -8,7 +8,7 @@ use super::{Provenance, Summary, design_json, json, tables};
 use crate::deck::{self, DeckError, DeckPlan};
 use crate::design::Design;
 use crate::error::Error;
-use crate::input::DeckKind;
+use crate::input::{DeckKind, DeckSolver};
 use crate::progress::Progress;
 use crate::{SCHEMA, report};
 
@@ -17,7 +17,7 @@ const OTHER_FILES: u64 = 8 << 20;
 
 /// Every file this version may write besides the ones of a verification; an earlier design's are removed if the new one
 /// does not have them.
-const KNOWN_FILES: [&str; 10] = [
+const KNOWN_FILES: [&str; 19] = [
     "design.json",
     "profile.csv",
     "slices.csv",
@@ -28,7 +28,19 @@ const KNOWN_FILES: [&str; 10] = [
     "abaqus/voxel_shell.inp",
     "calculix/graded_solid.inp",
     "calculix/voxel_solid.inp",
+    "abaqus/voxel_heat.inp",
+    "abaqus/graded_heat.inp",
+    "abaqus/voxel_current.inp",
+    "abaqus/graded_current.inp",
+    "calculix/voxel_heat.inp",
+    "calculix/graded_heat.inp",
+    "nastran/voxel_solid.bdf",
+    "nastran/graded_solid.bdf",
+    FRACTIONS,
 ];
+
+/// Fractions along the spoke, for programs that read a mesh and interpolate.
+const FRACTIONS: &str = "nastran/fractions.csv";
 
 /// What may be written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -40,7 +52,7 @@ pub struct WriteOptions {
 /// A kind of output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OutputKind {
-    /// One of the decks, for every solver the design names.
+    /// One of the mechanical decks and those of heat and current on its mesh, for every solver the design names.
     Deck(DeckKind),
     /// `profile.csv` and `slices.csv`.
     Tables,
@@ -114,14 +126,18 @@ pub fn write_outputs(
         None
     };
     let mut decks = deck::plan(design);
-    decks.retain(|d| wants(OutputKind::Deck(d.kind)));
+    decks.retain(|d| wants(OutputKind::Deck(d.kind.mesh())));
+    let fractions = decks.iter().any(|d| d.solver == DeckSolver::Nastran);
     total(OTHER_FILES + decks.iter().map(|d| d.bytes).sum::<u64>());
     if !progress(0) {
         return Err(Error::Cancelled);
     }
     require_room(folder, &decks, options)?;
 
-    let mut files: Vec<(String, String)> = decks.iter().map(|d| (d.relative_path().to_owned(), describe(d))).collect();
+    let mut files: Vec<(String, String)> = decks.iter().map(|d| (d.relative_path(), describe(d))).collect();
+    if fractions {
+        files.push((FRACTIONS.to_owned(), "fractions of the phases along the spoke".to_owned()));
+    }
     let mut others = |kind: OutputKind, name: &str, what: String| {
         if wants(kind) {
             files.push((name.to_owned(), what));
@@ -138,8 +154,11 @@ pub fn write_outputs(
     let mut before = 0;
     for plan in &decks {
         let counted = |bytes: u64| progress(before + bytes);
-        staging.write(plan.relative_path(), |out| deck::write(design, plan, &provenance, out, &counted))?;
+        staging.write(&plan.relative_path(), |out| deck::write(design, plan, &provenance, out, &counted))?;
         before += plan.bytes;
+    }
+    if fractions {
+        staging.write(FRACTIONS, |out| tables::write_fractions(design, out))?;
     }
     if wants(OutputKind::Tables) {
         staging.write("profile.csv", |out| tables::write_profile(design, out))?;
