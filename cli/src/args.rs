@@ -101,6 +101,9 @@ pub struct MicromechanicsOptions {
     /// Clamp the loaded faces instead of letting them slide: the bounds then need not hold.
     #[arg(long)]
     pub clamped: bool,
+    /// Also write decks for ABAQUS and CalculiX that test this layout along x, y and z, such as 110/000/001.
+    #[arg(long, value_name = "LAYOUT")]
+    pub deck: Option<String>,
     /// Folder to write into [default: out/micromechanics].
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,

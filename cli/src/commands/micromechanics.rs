@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use voxelastica_core::materials::{Material, library};
-use voxelastica_core::micromechanics::unit_cell::{Catalogue, CellMesh, CellSize, LoadedFaces, classes};
+use voxelastica_core::micromechanics::unit_cell::{BrickKind, Catalogue, CellMesh, CellSize, Layout, LoadedFaces, Row, classes};
 use voxelastica_core::output::unit_cells::write_unit_cells;
 use voxelastica_core::{DesignInput, Error, InputError};
 
@@ -25,11 +25,12 @@ pub fn run(options: &MicromechanicsOptions, console: &Console) -> Result<u8, Err
     let mesh = CellMesh {
         elements_per_voxel: options.elements_per_voxel.into(),
         element: match options.element {
-            ElementChoice::Enhanced => voxelastica_core::micromechanics::unit_cell::BrickKind::Enhanced,
-            ElementChoice::Trilinear => voxelastica_core::micromechanics::unit_cell::BrickKind::Trilinear,
+            ElementChoice::Enhanced => BrickKind::Enhanced,
+            ElementChoice::Trilinear => BrickKind::Trilinear,
         },
         faces: if options.clamped { LoadedFaces::Clamped } else { LoadedFaces::Sliding },
     };
+    let deck = options.deck.as_deref().map(|text| Layout::read(text, size)).transpose()?;
     let start = Instant::now();
     let bar = console.bar(classes(size).len() as u64, "{msg} [{wide_bar}] {pos}/{len} classes {eta}", "testing");
     let progress = |done: u64| {
@@ -41,7 +42,7 @@ pub fn run(options: &MicromechanicsOptions, console: &Console) -> Result<u8, Err
     let cells = cells?;
     let seconds = start.elapsed().as_secs_f64();
     let folder = options.output.clone().unwrap_or_else(|| PathBuf::from("out").join("micromechanics"));
-    let files = write_unit_cells(&cells, &folder, |_| Ok(Vec::new()))?;
+    let files = write_unit_cells(&cells, deck, &folder)?;
     report(&cells, seconds, console);
     console.say(format!("written   {}", folder.display()));
     for file in files {
@@ -65,7 +66,7 @@ fn report(cells: &Catalogue, seconds: f64, console: &Console) {
         rigid.modulus_mpa
     ));
     console.detail(format!("          three directions each, {seconds:.2} s"));
-    let weight = |wanted: &dyn Fn(&voxelastica_core::micromechanics::unit_cell::Row) -> bool| {
+    let weight = |wanted: &dyn Fn(&Row) -> bool| {
         cells.classes().filter(|row| wanted(row)).map(|row| row.multiplicity).sum::<u32>()
     };
     let outside = weight(&|row| !row.is_within_bounds());
