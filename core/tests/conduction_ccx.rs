@@ -77,7 +77,7 @@ fn a_strip_of_one_phase_heats_as_the_series_says() {
     let diffusivity = 2.01 / (1.27e-9 * 1.2e9);
     let temperatures: Vec<_> = blocks.iter().filter(|b| b.quantity == Quantity::Temperature).collect();
     // The pictures of the transient step; the last block is the steady one.
-    assert!(temperatures.len() >= 3);
+    assert!(temperatures.len() >= 3, "{:?}", temperatures.iter().map(|b| b.time).collect::<Vec<_>>());
     for block in &temperatures[..temperatures.len() - 1] {
         let fourier = diffusivity * block.time / 400.0;
         for (i, (_, [t, ..])) in block.rows.iter().enumerate() {

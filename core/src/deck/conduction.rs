@@ -258,7 +258,7 @@ impl<'a> Conduction<'a> {
         if let Some(Transient { first, period, change, .. }) = self.transient() {
             open(sink, "HEATING")?;
             sink.line(&format!("*HEAT TRANSFER, DELTMX={}", real(change)))?;
-            let [first, period, least, most] = [first, period, 1e-3 * first, 0.05 * period].map(real);
+            let [first, period, least, most] = [first, period, 1e-6 * first, 0.05 * period].map(real);
             sink.line(&format!("{first},{period},{least},{most}"))?;
             conduction::held(sink, "RIM", 11, HOT)?;
             self.heat_output(sink, true)?;

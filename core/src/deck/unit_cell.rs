@@ -157,7 +157,7 @@ impl UnitCellDeck<'_> {
         let abaqus = self.solver == DeckSolver::Abaqus;
         sink.line(if abaqus { "*STEP, NAME=STRETCH, NLGEOM=NO" } else { "*STEP" })?;
         sink.line("*STATIC")?;
-        sink.line("1.,1.")?;
+        sink.line("1.,1.,1e-5,1.")?;
         let dof = |axis: usize| axis as u8 + 1;
         boundary::hold(sink, "LOW", dof(axis), dof(axis))?;
         sink.line("*BOUNDARY")?;

@@ -30,7 +30,7 @@ pub fn write_unit_cells(cells: &Catalogue, deck: Option<Layout>, folder: &Path) 
     let mut files = ["unit_cells.csv", "unit_cells_modulus.svg", "unit_cells_departure.svg"].map(str::to_owned).to_vec();
     let provenance = provenance(cells);
     let [soft, rigid] = cells.phases();
-    for layout in deck {
+    if let Some(layout) = deck {
         for solver in [DeckSolver::Abaqus, DeckSolver::Calculix] {
             for axis in 0..3 {
                 let (size, mesh, phases) = (cells.size(), cells.mesh(), [soft, rigid]);
