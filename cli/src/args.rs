@@ -38,6 +38,8 @@ pub enum Command {
     Fabricate(FabricateOptions),
     /// Let heat and current through a design's strip: fields, effective conductivities, pictures.
     Conduct(Box<ConductOptions>),
+    /// Test every layout of a small cell of two phases: moduli along x, y and z against their bounds.
+    Micromechanics(MicromechanicsOptions),
     /// List the materials of the library.
     Materials,
     /// List the kinds of targets and the built-in examples, or print one of them.
@@ -221,6 +223,58 @@ pub enum ThresholdChoice {
     Rise,
     /// The absolute temperature.
     Value,
+}
+
+/// Options of `micromechanics`.
+#[derive(Debug, Args)]
+pub struct MicromechanicsOptions {
+    /// The soft and the rigid phase: names from the library, or MPa:POISSON such as 3.1:0.3 [default: FLX9070 FLX9095].
+    #[arg(long, num_args = 2, value_names = ["SOFT", "RIGID"])]
+    pub phases: Vec<String>,
+    /// Take the phases of this design file.
+    #[arg(long, value_name = "FILE", conflicts_with = "phases")]
+    pub design: Option<PathBuf>,
+    /// Voxels along x, y and z.
+    #[arg(long, value_enum, default_value_t = CellChoice::Three)]
+    pub cell: CellChoice,
+    /// Elements along a voxel's edge.
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=8))]
+    pub elements_per_voxel: u8,
+    /// Which element.
+    #[arg(long, value_enum, default_value_t = ElementChoice::Enhanced)]
+    pub element: ElementChoice,
+    /// Clamp the loaded faces instead of letting them slide: the bounds then need not hold.
+    #[arg(long)]
+    pub clamped: bool,
+    /// Also write decks for ABAQUS and CalculiX that test this layout along x, y and z, such as 110/000/001.
+    #[arg(long, value_name = "LAYOUT")]
+    pub deck: Option<String>,
+    /// Folder to write into [default: out/micromechanics].
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+}
+
+/// Sizes of cells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum CellChoice {
+    /// 16 layouts in 6 classes.
+    #[value(name = "2x2x1")]
+    Two,
+    /// 512 layouts in 102 classes.
+    #[value(name = "3x3x1")]
+    Three,
+    /// 65 536 layouts in 8 548 classes.
+    #[value(name = "4x4x1")]
+    Four,
+}
+
+/// Elements of unit cells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ElementChoice {
+    /// Bricks with enhanced strains.
+    Enhanced,
+    /// Trilinear bricks: too stiff on coarse meshes.
+    Trilinear,
 }
 
 /// Options of `targets`.

@@ -19,6 +19,7 @@ fn main() -> ExitCode {
         Command::Verify(options) => commands::verify::run(&options, &console),
         Command::Fabricate(options) => commands::fabricate::run(&options, &console),
         Command::Conduct(options) => commands::conduct::run(&options, &console),
+        Command::Micromechanics(options) => commands::micromechanics::run(&options, &console),
         Command::Materials => commands::lists::materials(&console),
         Command::Targets(options) => commands::lists::targets(&options, &console),
         Command::Schema => commands::lists::schema(&console),

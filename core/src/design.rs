@@ -11,13 +11,14 @@ use crate::elastica::morph::{Guide, MorphPath};
 use crate::elastica::{ElasticaError, tessellation};
 use crate::error::Error;
 use crate::input::{DesignInput, TargetInput};
-use crate::micromechanics::{PhaseSet, voigt};
+use crate::micromechanics::calibration::{MixtureRule, calibrate};
+use crate::micromechanics::{Fractions, PhaseSet, voigt};
 use crate::modulus_field::{ModulusField, ModulusFieldError};
 use crate::profile::Profile;
 use crate::progress::{self, Cancelled};
 use crate::target::{MeridianCurve, MeridianPoint, Target, resolve};
 use crate::voxel::counts::{Filling, fill_unless};
-use crate::voxel::{Lattice, LatticeError, Slice, SliceTarget, VoxelGrid};
+use crate::voxel::{Lattice, LatticeError, Match, Slice, SliceTarget, VoxelGrid};
 
 /// Stations of the profile, evenly spaced, ends included.
 pub const STATIONS: usize = 1001;
@@ -49,6 +50,7 @@ pub struct Design {
     body: Body,
     contrast: f64,
     scale_mpa: f64,
+    rule: Option<Arc<MixtureRule>>,
     profile: Profile,
     grid: VoxelGrid,
     slices: Vec<Slice>,
@@ -90,7 +92,8 @@ impl Design {
         reach::check(input, &phases, &body, target.as_ref())?;
 
         let outline = outline(input, &lattice, &body, limits)?;
-        let scale_mpa = scale(input, &phases, &lattice, &outline, contrast);
+        let rule = mixture_rule(input, &phases, lattice.layers, cancelled)?;
+        let scale_mpa = scale(input, &phases, rule.as_deref(), &lattice, &outline, contrast);
         let targets: Vec<SliceTarget> = outline
             .iter()
             .map(|o| SliceTarget { width_mm: o.width_mm, modulus_mpa: scale_mpa * o.ratio, half_width: o.half_width })
@@ -100,6 +103,7 @@ impl Design {
             pattern: input.voxels.pattern,
             seed: input.voxels.seed,
             matching: input.voxels.matching,
+            rule: rule.as_deref(),
         };
         let (grid, slices) = fill_unless(&lattice, &targets, &filling, cancelled).ok_or(Error::Cancelled)?;
 
@@ -112,6 +116,7 @@ impl Design {
             body,
             contrast,
             scale_mpa,
+            rule,
             profile: Profile::default(),
             grid,
             slices,
@@ -253,6 +258,28 @@ impl Design {
         self.phases.phases().iter().zip(&counts).map(|(p, n)| p.poisson * *n as f64 / total).sum()
     }
 
+    /// The calibrated mixture rule, where the design matches by one.
+    #[must_use]
+    pub fn mixture_rule(&self) -> Option<&MixtureRule> {
+        self.rule.as_deref()
+    }
+
+    /// Fractions of the phases that a modulus takes by the design's mixture rule.
+    #[must_use]
+    pub fn fractions(&self, modulus_mpa: f64) -> Fractions {
+        let plain = self.phases.fractions(modulus_mpa);
+        self.rule.as_ref().map_or(plain, |rule| {
+            let rigid = rule.fraction(modulus_mpa);
+            Fractions { values: [1.0 - rigid, rigid, 0.0], ..plain }
+        })
+    }
+
+    /// Fraction of the stiffest phase that a modulus takes by the design's mixture rule.
+    #[must_use]
+    pub fn rigid_fraction(&self, modulus_mpa: f64) -> f64 {
+        self.fractions(modulus_mpa).values[self.phases.phases().len() - 1]
+    }
+
     fn graded_stiffness(&self) -> StripStiffness {
         let third = self.input.strips.thickness_mm.powi(3) / 12.0;
         let last = 2 * (STATIONS - 1);
@@ -306,7 +333,7 @@ impl Design {
             profile.width.push(width);
             profile.modulus_ratio.push(ratio);
             profile.modulus_mpa.push(modulus);
-            profile.rigid_fraction.push(self.phases.rigid_fraction(modulus));
+            profile.rigid_fraction.push(self.rigid_fraction(modulus));
         }
         Ok(profile)
     }
@@ -436,8 +463,18 @@ fn outline(input: &DesignInput, lattice: &Lattice, body: &Body, limits: Limits) 
 
 /// The largest modulus, MPa: the phases' default, reduced so that no slice of whole voxels needs more than it, or raised
 /// where the softest slice would else need less than the softest phase and the stiffest phase allows it.
-fn scale(input: &DesignInput, phases: &PhaseSet, lattice: &Lattice, outline: &[Outline], contrast: f64) -> f64 {
+fn scale(
+    input: &DesignInput,
+    phases: &PhaseSet,
+    rule: Option<&MixtureRule>,
+    lattice: &Lattice,
+    outline: &[Outline],
+    contrast: f64,
+) -> f64 {
     if let TargetInput::Strip { rigid_fraction: Some(rigid), .. } = input.target {
+        if let Some(rule) = rule {
+            return rule.modulus(rigid);
+        }
         return uniform_modulus(phases, rigid, input.materials.intermediate_fraction);
     }
     let peak = phases.default_peak(contrast);
@@ -445,6 +482,20 @@ fn scale(input: &DesignInput, phases: &PhaseSet, lattice: &Lattice, outline: &[O
     let (most, least) = (needs().fold(1.0, f64::max), needs().fold(1.0 / contrast, f64::min));
     let (default, highest) = (peak / most, phases.stiffest() / most);
     (phases.softest() / least).clamp(default, highest.max(default))
+}
+
+/// The mixture rule of `match = "calibrated"`.
+fn mixture_rule(
+    input: &DesignInput,
+    phases: &PhaseSet,
+    layers: usize,
+    cancelled: Cancelled<'_>,
+) -> Result<Option<Arc<MixtureRule>>, Error> {
+    if input.voxels.matching != Match::Calibrated {
+        return Ok(None);
+    }
+    let rule = calibrate(phases, input.voxels.pattern, layers, cancelled);
+    rule.map(Some).map_err(|error| Error::calibration(&error))
 }
 
 /// Voigt modulus of a uniform strip with a given fraction of the stiffest phase.

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use crate::elastica::ElasticaError;
 use crate::input::InputError;
+use crate::micromechanics::calibration::CalibrationError;
+use crate::micromechanics::unit_cell::UnitCellError;
 use crate::target::TargetError;
 use crate::voxel::LatticeError;
 
@@ -90,6 +92,16 @@ impl Infeasible {
     }
 }
 
+impl From<UnitCellError> for Error {
+    fn from(error: UnitCellError) -> Self {
+        match error {
+            UnitCellError::Cancelled => Self::Cancelled,
+            UnitCellError::Singular { .. } => Self::Solver(error.to_string()),
+            other => Self::Input(InputError::new("", "", other.to_string()).in_file("micromechanics")),
+        }
+    }
+}
+
 impl Error {
     /// Names the file that the design was read from, where the error does not name one yet.
     #[must_use]
@@ -138,6 +150,13 @@ impl Error {
 
     pub(crate) fn target(key: &str, value: impl std::fmt::Display, error: &TargetError) -> Self {
         Self::Input(InputError::new(key, value, error.to_string()))
+    }
+
+    pub(crate) fn calibration(error: &CalibrationError) -> Self {
+        match error {
+            CalibrationError::Cancelled => Self::Cancelled,
+            other => Self::Input(InputError::new("voxels.match", "\"calibrated\"", other.to_string())),
+        }
     }
 
     pub(crate) fn lattice(size_mm: f64, error: &LatticeError) -> Self {

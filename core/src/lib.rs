@@ -54,6 +54,7 @@ pub mod design;
 pub mod elastica;
 mod error;
 pub mod fabrication;
+pub mod fem;
 pub mod flower;
 pub mod input;
 pub mod materials;

@@ -47,4 +47,11 @@ impl Profile {
         let edge = |side: f64| self.s.iter().zip(&self.width).map(move |(s, w)| [*s, side * 0.5 * w]);
         edge(-1.0).chain(edge(1.0).rev()).collect()
     }
+
+    /// Largest curvature between neighbouring stations, 1/mm.
+    #[must_use]
+    pub fn largest_curvature(&self) -> f64 {
+        let turn = |s: &[f64], theta: &[f64]| ((theta[1] - theta[0]) / (s[1] - s[0])).abs();
+        self.s.windows(2).zip(self.inclination.windows(2)).map(|(s, theta)| turn(s, theta)).fold(0.0, f64::max)
+    }
 }

@@ -11,6 +11,15 @@ pub fn ignore(_bytes: u64) -> bool {
     true
 }
 
+/// Told the share done, in `[0, 1]`; returning `false` cancels the work.
+pub type Share<'a> = &'a (dyn Fn(f64) -> bool + Sync);
+
+/// A [`Share`] that never cancels and shows nothing.
+#[must_use]
+pub fn unseen(_share: f64) -> bool {
+    true
+}
+
 /// Asked whether work is to stop; from any thread, and often.
 pub type Cancelled<'a> = &'a (dyn Fn() -> bool + Sync);
 

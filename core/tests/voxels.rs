@@ -59,7 +59,7 @@ proptest! {
         let phases = phases(count, contrast);
         let lattice = Lattice { size_mm: 0.5, slices: 60, layers };
         let targets = targets(&lattice, contrast, phase, Rounding::Nearest);
-        let filling = Filling { phases: &phases, pattern, seed, matching: Match::Modulus };
+        let filling = Filling { phases: &phases, pattern, seed, matching: Match::Modulus, rule: None };
         let (grid, slices) = fill(&lattice, &targets, &filling);
         let step = pattern.granule(layers) as f64;
         let mut wanted = 0.0;
@@ -110,7 +110,7 @@ fn matching_the_stiffness_meets_it_where_matching_the_modulus_does_not() {
     let lattice = Lattice { size_mm: 0.25, slices: 80, layers: 8 };
     let targets = targets(&lattice, 4.0, 1.0, Rounding::Nearest);
     let rms = |matching: Match, pattern: Pattern| {
-        let (_, slices) = fill(&lattice, &targets, &Filling { phases: &phases, pattern, seed: 3, matching });
+        let (_, slices) = fill(&lattice, &targets, &Filling { phases: &phases, pattern, seed: 3, matching, rule: None });
         let errors = slices.iter().map(|s| (s.section.stiffness / s.stiffness_target_nmm2 - 1.0).powi(2));
         (errors.sum::<f64>() / slices.len() as f64).sqrt()
     };
@@ -131,7 +131,7 @@ fn stiffness_matching_carries_its_residue_and_never_drifts() {
     let lattice = Lattice { size_mm: 0.5, slices: 200, layers: 4 };
     let targets = targets(&lattice, 4.0, 0.3, Rounding::Nearest);
     for pattern in [Pattern::Random, Pattern::ThroughThickness, Pattern::OneEdge] {
-        let filling = Filling { phases: &phases, pattern, seed: 5, matching: Match::Stiffness };
+        let filling = Filling { phases: &phases, pattern, seed: 5, matching: Match::Stiffness, rule: None };
         let (grid, slices) = fill(&lattice, &targets, &filling);
         let drift: f64 = slices.iter().map(|s| s.section.stiffness - s.stiffness_target_nmm2).sum();
         let one = 0.25 * 3.0 * 4.0 / 4.0;
@@ -151,7 +151,7 @@ fn one_phase_limits_are_pure() {
         let targets = vec![SliceTarget { width_mm: 4.0, modulus_mpa: modulus, half_width: 4 }; 10];
         for pattern in PATTERNS {
             for matching in [Match::Modulus, Match::Stiffness] {
-                let (grid, _) = fill(&lattice, &targets, &Filling { phases: &phases, pattern, seed: 1, matching });
+                let (grid, _) = fill(&lattice, &targets, &Filling { phases: &phases, pattern, seed: 1, matching, rule: None });
                 assert!(grid.phases().iter().all(|p| *p == full), "{pattern:?} {matching:?} {modulus}");
             }
         }

@@ -4,7 +4,6 @@ use std::ffi::{c_char, c_void};
 use std::path::Path;
 
 use voxelastica_core::Design;
-use voxelastica_core::input::DeckKind;
 use voxelastica_core::output::write::{OutputKind, WriteOptions, Written, write_outputs};
 
 use crate::arguments::{Out, path};
@@ -54,20 +53,11 @@ pub fn kinds(design: &Design, bits: u32) -> Result<Vec<OutputKind>, Failure> {
     let missing = |kind: &OutputKind| matches!(kind, OutputKind::Deck(deck) if !decks.write.contains(deck));
     match kinds.iter().find(|kind| missing(kind)) {
         Some(OutputKind::Deck(deck)) if bits != Output::All as u32 => {
-            let asked = format!("\"{}\"", deck_name(*deck));
+            let asked = format!("\"{}\"", deck.name());
             let problem = "the design does not have this deck; name it in decks.write";
             Err(Failure { code: Status::Input, ..Failure::argument(Status::Input, "decks.write", asked, problem) })
         }
         _ => Ok(kinds),
-    }
-}
-
-fn deck_name(deck: DeckKind) -> &'static str {
-    match deck {
-        DeckKind::GradedShell => "graded_shell",
-        DeckKind::GradedSolid => "graded_solid",
-        DeckKind::VoxelSolid => "voxel_solid",
-        DeckKind::VoxelShell => "voxel_shell",
     }
 }
 

@@ -13,8 +13,18 @@ from .table import numeric
 TYPES_OF_SUPPORT = {"XSYMM", "YSYMM", "ZSYMM", "XASYMM", "YASYMM", "ZASYMM", "ENCASTRE", "PINNED"}
 
 
+THERMAL = {"HEAT TRANSFER", "COUPLED THERMAL-ELECTRICAL"}
+
+
 def materials(deck: Deck) -> Iterator[Problem]:
-    """Every material is elastic, with sane constants in tables that ascend; explicit steps need densities."""
+    """Every material is elastic, with sane constants in tables that ascend; explicit steps need densities.
+
+    Where nothing but heat and current is solved for, it conducts instead.
+    """
+    procedures = {step.procedure.keyword for step in deck.steps if step.procedure}
+    if procedures and procedures <= THERMAL:
+        yield from _conducting(deck, procedures)
+        return
     explicit = any(step.explicit for step in deck.steps)
     for material in deck.materials.values():
         if "HYPERELASTIC" in material.options:
@@ -25,6 +35,24 @@ def materials(deck: Deck) -> Iterator[Problem]:
             yield from _elastic(material)
         if explicit and "DENSITY" not in material.options:
             yield problem(material.block, "has no *DENSITY, which *DYNAMIC, EXPLICIT needs")
+
+
+def _conducting(deck: Deck, procedures: set[str]) -> Iterator[Problem]:
+    """Conductivities are positive; transient heat needs densities and specific heats."""
+    needed = ["CONDUCTIVITY"]
+    if "COUPLED THERMAL-ELECTRICAL" in procedures:
+        needed.append("ELECTRICAL CONDUCTIVITY")
+    if any(step.procedure and not step.procedure.has("STEADY STATE") for step in deck.steps):
+        needed += ["DENSITY", "SPECIFIC HEAT"]
+    for material in deck.materials.values():
+        for option in needed:
+            block = material.options.get(option)
+            if block is None:
+                yield problem(material.block, f"has no *{option}")
+                continue
+            for line, items in block.rows():
+                if not numeric(items[0]) or float(items[0]) <= 0:
+                    yield problem(block, f"{items[0]} is not a positive number", line)
 
 
 def _elastic(material: Material) -> Iterator[Problem]:
@@ -114,7 +142,7 @@ def _dofs(block: Block, line: int, items: list[str], in_step: bool) -> Iterator[
             yield problem(block, f"{items[1]} may be used in the model data only", line)
         return
     dofs = [item for item in items[1:3] if item]
-    if not dofs or not all(item.isdigit() and (1 <= int(item) <= 6 or item in ("8", "11")) for item in dofs):
+    if not dofs or not all(item.isdigit() and (1 <= int(item) <= 6 or item in ("8", "9", "11")) for item in dofs):
         yield problem(block, f"no degree of freedom: {', '.join(items[1:3])}", line)
     elif int(dofs[-1]) < int(dofs[0]):
         yield problem(block, f"the last degree of freedom, {dofs[-1]}, is below the first, {dofs[0]}", line)
@@ -153,7 +181,7 @@ def steps(deck: Deck) -> Iterator[Problem]:
         seen |= {name} if name else set()
         if step.procedure is None:
             yield problem(step.block, "has no procedure, such as *STATIC")
-        elif step.procedure.keyword == "STATIC":
+        elif step.procedure.keyword in THERMAL | {"STATIC"}:
             yield from _increments(step.procedure)
         yield from _output(step)
 

@@ -37,7 +37,7 @@ class ElementType:
 
 _SHAPES = [
     (
-        ("C3D8", "C3D8R", "C3D8I", "C3D8H", "C3D8RH", "C3D8IH", "C3D8T", "C3D8RT", "DC3D8"),
+        ("C3D8", "C3D8R", "C3D8I", "C3D8H", "C3D8RH", "C3D8IH", "C3D8T", "C3D8RT", "DC3D8", "DC3D8E"),
         8,
         "SOLID SECTION",
         HEX_FACES,
@@ -53,4 +53,4 @@ _SHAPES = [
     (("R3D3",), 3, "RIGID BODY", TRI_FACES),
 ]
 TYPES = {name: ElementType(n, section, faces) for names, n, section, faces in _SHAPES for name in names}
-CALCULIX = {"C3D8", "C3D8R", "C3D8I", "C3D20", "C3D20R", "C3D6", "C3D4", "C3D10", "S4", "S4R", "S3", "S8R"}
+CALCULIX = {"DC3D8", "C3D8", "C3D8R", "C3D8I", "C3D20", "C3D20R", "C3D6", "C3D4", "C3D10", "S4", "S4R", "S3", "S8R"}

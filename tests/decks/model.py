@@ -171,7 +171,7 @@ class Step:
 
     @property
     def procedure(self) -> Block | None:
-        names = ("STATIC", "DYNAMIC", "BUCKLE", "FREQUENCY")
+        names = ("STATIC", "DYNAMIC", "BUCKLE", "FREQUENCY", "HEAT TRANSFER", "COUPLED THERMAL-ELECTRICAL")
         return next((b for b in self.blocks if b.keyword in names), None)
 
     @property

@@ -55,6 +55,11 @@ def data_references(deck: Deck) -> Iterator[Problem]:
             yield from _rows(deck, block, "nsets", "node set", deck.root, 1)
         elif block.keyword == "DLOAD":
             yield from _rows(deck, block, "elsets", "element set", deck.root, 1)
+        elif block.keyword == "DSECURRENT":
+            for line, items in block.rows():
+                owner, _, local = deck.split(label(items[0]), deck.root)
+                if owner is None or local not in owner.surfaces:
+                    yield problem(block, f"surface {items[0]} is not defined", line)
     for scope in deck.scopes():
         for block in scope.surfaces.values():
             if block.get("TYPE") == "NODE":
@@ -316,7 +321,7 @@ def _terms(deck: Deck, block: Block, scope: Scope, line: int, terms: list) -> It
         if refs is None:
             yield problem(block, f"node set {name} is not defined", line)
         sizes.append(len(refs or ()))
-        if not 1 <= dof <= 6 and dof not in (8, 11):
+        if not 1 <= dof <= 6 and dof not in (8, 9, 11):
             yield problem(block, f"dof {dof} does not exist", line)
     if any(size not in (1, sizes[0]) for size in sizes):
         yield problem(block, f"the node sets of one equation have different sizes: {sizes}", line)

@@ -4,6 +4,7 @@ pub mod conduct;
 pub mod design;
 pub mod fabricate;
 pub mod lists;
+pub mod micromechanics;
 pub mod verify;
 
 use std::path::Path;

@@ -19,15 +19,7 @@ pub(super) struct GradedSolid<'a> {
 
 impl<'a> GradedSolid<'a> {
     pub(super) fn new(design: &'a Design, solver: DeckSolver) -> Self {
-        let (decks, strips) = (&design.input().decks, &design.input().strips);
-        let [along, across, through] = match solver {
-            DeckSolver::Abaqus => decks.graded_elements,
-            DeckSolver::Calculix => decks.calculix_graded_elements,
-        };
-        let station = |i: usize| design.width_and_modulus(strips.length_mm * i as f64 / along as f64);
-        let (widths, moduli) = (0..=along).map(station).unzip();
-        let block =
-            Block::new(strips.length_mm, strips.thickness_mm, through, vec![across; along], Spacing::Width(widths));
+        let (block, moduli) = block(design, solver);
         Self { model: SolidModel::new(design, solver, block), moduli }
     }
 
@@ -47,6 +39,19 @@ impl<'a> GradedSolid<'a> {
         }
         runs
     }
+}
+
+/// The mesh, and the designed modulus at every plane of nodes, MPa.
+pub(super) fn block(design: &Design, solver: DeckSolver) -> (Block, Vec<f64>) {
+    let (decks, strips) = (&design.input().decks, &design.input().strips);
+    let [along, across, through] = match solver {
+        DeckSolver::Abaqus => decks.graded_elements,
+        DeckSolver::Calculix | DeckSolver::Nastran => decks.calculix_graded_elements,
+    };
+    let station = |i: usize| design.width_and_modulus(strips.length_mm * i as f64 / along as f64);
+    let (widths, moduli) = (0..=along).map(station).unzip();
+    let block = Block::new(strips.length_mm, strips.thickness_mm, through, vec![across; along], Spacing::Width(widths));
+    (block, moduli)
 }
 
 impl Deck for GradedSolid<'_> {

@@ -13,7 +13,8 @@ pub(crate) enum Layout {
 impl Layout {
     pub(crate) fn new(solver: DeckSolver, decks: &DecksInput) -> Self {
         match (solver, decks.style) {
-            (DeckSolver::Calculix, _) => Self::Calculix,
+            // NASTRAN meshes are flat as well, and have a writer of their own.
+            (DeckSolver::Calculix | DeckSolver::Nastran, _) => Self::Calculix,
             (DeckSolver::Abaqus, DeckStyle::Parts) => Self::AbaqusParts,
             (DeckSolver::Abaqus, DeckStyle::Flat) => Self::AbaqusFlat,
         }

@@ -8,15 +8,18 @@
 //! Units are mm, N, MPa, tonne, s, K. Solids are one strip along x, its rim at `x = 0`, its mid-plane at `z = 0`; shells are
 //! the whole flower, hub at the origin, spoke 1 along +x, z up.
 
+mod conduction;
 mod graded_shell;
 mod graded_solid;
 mod keywords;
 mod layout;
+mod nastran;
 mod number;
 mod schedule;
 mod shell;
 mod sink;
 mod solid;
+pub mod unit_cell;
 mod voxel_shell;
 mod voxel_solid;
 
@@ -26,6 +29,7 @@ use crate::design::Design;
 use crate::input::model::{DeckKind, DeckSolver};
 use crate::output::Provenance;
 use crate::progress::{Cancelled, Progress, never};
+use conduction::{Carrier, Conduction};
 use sink::Sink;
 
 /// A deck that can be written, and how large it will be.
@@ -46,17 +50,9 @@ pub struct DeckPlan {
 impl DeckPlan {
     /// Where the deck goes in the design's folder.
     #[must_use]
-    pub fn relative_path(&self) -> &'static str {
-        match (self.solver, self.kind) {
-            (DeckSolver::Abaqus, DeckKind::GradedShell) => "abaqus/graded_shell.inp",
-            (DeckSolver::Abaqus, DeckKind::GradedSolid) => "abaqus/graded_solid.inp",
-            (DeckSolver::Abaqus, DeckKind::VoxelSolid) => "abaqus/voxel_solid.inp",
-            (DeckSolver::Abaqus, DeckKind::VoxelShell) => "abaqus/voxel_shell.inp",
-            (DeckSolver::Calculix, DeckKind::GradedShell) => "calculix/graded_shell.inp",
-            (DeckSolver::Calculix, DeckKind::GradedSolid) => "calculix/graded_solid.inp",
-            (DeckSolver::Calculix, DeckKind::VoxelSolid) => "calculix/voxel_solid.inp",
-            (DeckSolver::Calculix, DeckKind::VoxelShell) => "calculix/voxel_shell.inp",
-        }
+    pub fn relative_path(&self) -> String {
+        let (folder, ending) = self.solver.folder_and_ending();
+        format!("{folder}/{}.{ending}", self.kind.name())
     }
 }
 
@@ -74,7 +70,7 @@ pub enum DeckError {
     #[error("{path} does not exist for this design: {reason}")]
     NotOffered {
         /// Where the deck would go.
-        path: &'static str,
+        path: String,
         /// Why not.
         reason: &'static str,
     },
@@ -180,8 +176,15 @@ trait Deck {
 /// The deck of a kind, or why there is none.
 fn prepare<'a>(design: &'a Design, kind: DeckKind, solver: DeckSolver) -> Result<Box<dyn Deck + 'a>, &'static str> {
     match (kind, solver) {
+        (DeckKind::GradedSolid, DeckSolver::Nastran) => Ok(Box::new(nastran::NastranMesh::graded(design))),
+        (DeckKind::VoxelSolid, DeckSolver::Nastran) => Ok(Box::new(nastran::NastranMesh::voxels(design))),
+        (_, DeckSolver::Nastran) => Err("only the meshes of the solids are written as NASTRAN bulk data"),
         (DeckKind::GradedSolid, _) => Ok(Box::new(graded_solid::GradedSolid::new(design, solver))),
         (DeckKind::VoxelSolid, _) => Ok(Box::new(voxel_solid::VoxelSolid::new(design, solver))),
+        (DeckKind::VoxelHeat, _) => Ok(Box::new(Conduction::voxels(design, solver, Carrier::Heat)?)),
+        (DeckKind::GradedHeat, _) => Ok(Box::new(Conduction::graded(design, solver, Carrier::Heat)?)),
+        (DeckKind::VoxelCurrent, _) => Ok(Box::new(Conduction::voxels(design, solver, Carrier::Current)?)),
+        (DeckKind::GradedCurrent, _) => Ok(Box::new(Conduction::graded(design, solver, Carrier::Current)?)),
         (_, DeckSolver::Calculix) => Err("its shells diverge in large rotations"),
         (_, _) if design.input().is_strip() => Err("a rectangular strip is no flower"),
         (DeckKind::GradedShell, DeckSolver::Abaqus) => Ok(Box::new(graded_shell::GradedShell::new(design))),

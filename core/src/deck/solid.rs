@@ -11,14 +11,13 @@ use super::schedule::Schedule;
 use super::sink::Sink;
 use crate::design::Design;
 use crate::elastica::morph::Guide;
+use crate::fem::model::LARGE_STRAIN;
 use crate::input::model::{DeckSolver, DecksInput};
 use crate::mesh::Block;
 
 /// Rise of a strip that is to buckle, as a share of its thickness: with a twentieth some runs buckled downward; the
 /// final shape hardly depends on it.
 const BOW: f64 = 0.1;
-/// Strain at the faces from which on the law must hold in large strains.
-const LARGE_STRAIN: f64 = 0.1;
 
 /// Name of the part and of its only instance.
 const PART: &str = "SPOKE";
@@ -210,9 +209,6 @@ fn element(decks: &DecksInput, layout: Layout, layers: usize) -> String {
 
 /// The law of the phases: linear unless CalculiX would have to go beyond [`LARGE_STRAIN`].
 fn law(design: &Design, layout: Layout) -> Law {
-    let profile = design.profile();
-    let turn = |s: &[f64], theta: &[f64]| ((theta[1] - theta[0]) / (s[1] - s[0])).abs();
-    let curvature = profile.s.windows(2).zip(profile.inclination.windows(2)).map(|(s, theta)| turn(s, theta));
-    let strain = 0.5 * design.input().strips.thickness_mm * curvature.fold(0.0, f64::max);
+    let strain = 0.5 * design.input().strips.thickness_mm * design.profile().largest_curvature();
     if strain > LARGE_STRAIN && !layout.is_abaqus() { Law::NeoHooke } else { Law::Linear }
 }

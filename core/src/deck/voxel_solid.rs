@@ -19,19 +19,25 @@ pub(super) struct VoxelSolid<'a> {
 
 impl<'a> VoxelSolid<'a> {
     pub(super) fn new(design: &'a Design, solver: DeckSolver) -> Self {
-        let (decks, strips, grid) = (&design.input().decks, &design.input().strips, design.grid());
-        let wanted = match solver {
-            DeckSolver::Abaqus => decks.elements_per_voxel_edge,
-            DeckSolver::Calculix => decks.calculix_elements_per_voxel_edge,
-        };
-        // An odd number of element layers would have no nodes on the mid-plane.
-        let doubled = grid.layers() * wanted % 2 == 1;
-        let per_edge = if doubled { 2 * wanted } else { wanted };
-        let across = grid.half_widths().iter().flat_map(|n| std::iter::repeat_n(2 * n * per_edge, per_edge)).collect();
-        let edge = Spacing::Even(grid.size_mm() / per_edge as f64);
-        let block = Block::new(strips.length_mm, strips.thickness_mm, grid.layers() * per_edge, across, edge);
+        let (block, per_edge, doubled) = block(design, solver);
         Self { model: SolidModel::new(design, solver, block), per_edge, doubled }
     }
+}
+
+/// The mesh, the elements along a voxel's edge, and whether these were doubled.
+pub(super) fn block(design: &Design, solver: DeckSolver) -> (Block, usize, bool) {
+    let (decks, strips, grid) = (&design.input().decks, &design.input().strips, design.grid());
+    let wanted = match solver {
+        DeckSolver::Abaqus => decks.elements_per_voxel_edge,
+        DeckSolver::Calculix | DeckSolver::Nastran => decks.calculix_elements_per_voxel_edge,
+    };
+    // An odd number of element layers would have no nodes on the mid-plane.
+    let doubled = grid.layers() * wanted % 2 == 1;
+    let per_edge = if doubled { 2 * wanted } else { wanted };
+    let across = grid.half_widths().iter().flat_map(|n| std::iter::repeat_n(2 * n * per_edge, per_edge)).collect();
+    let edge = Spacing::Even(grid.size_mm() / per_edge as f64);
+    let block = Block::new(strips.length_mm, strips.thickness_mm, grid.layers() * per_edge, across, edge);
+    (block, per_edge, doubled)
 }
 
 impl Deck for VoxelSolid<'_> {

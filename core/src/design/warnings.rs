@@ -61,7 +61,7 @@ impl Design {
                 "the voxelised strip is predicted to miss the target by {:.2} % of its length; smaller voxels, another \
                  pattern{} bring it closer",
                 100.0 * error,
-                if self.input.voxels.matching == Match::Stiffness { "" } else { " or match = \"stiffness\"" }
+                if self.input.voxels.matching != Match::Modulus { "" } else { " or match = \"stiffness\"" }
             ));
         }
         let layers = self.grid.layers();

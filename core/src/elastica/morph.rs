@@ -63,6 +63,25 @@ impl Guide {
         }
     }
 
+    /// The target with its inclination scaled by the fraction; of clamped ends the straight line between them.
+    #[must_use]
+    pub fn scaled_shape(&self, fraction: f64) -> Equilibrium {
+        match self {
+            Self::Target { stations, .. } => on_target(stations, fraction, EndForces::default()),
+            Self::Clamped { length_mm, .. } => {
+                let share = self.hub_position(fraction)[0] / length_mm;
+                Equilibrium {
+                    s: vec![0.0, *length_mm],
+                    inclination: vec![0.0; 2],
+                    x: vec![0.0, share * length_mm],
+                    z: vec![0.0; 2],
+                    forces: EndForces::default(),
+                    iterations: 0,
+                }
+            }
+        }
+    }
+
     /// Conditions at both ends at a fraction of the morph.
     #[must_use]
     pub fn ends(&self, fraction: f64) -> EndConditions {

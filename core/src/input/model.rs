@@ -202,6 +202,53 @@ pub enum DeckKind {
     VoxelSolid,
     /// All spokes as shells on the voxel outline.
     VoxelShell,
+    /// Heat in one spoke, every voxel its phase.
+    VoxelHeat,
+    /// Heat in one spoke, smooth width, one mixture a slice.
+    GradedHeat,
+    /// Current in one spoke, every voxel its phase.
+    VoxelCurrent,
+    /// Current in one spoke, smooth width, one mixture a slice.
+    GradedCurrent,
+}
+
+impl DeckKind {
+    /// The name in design files and the stem of the deck's file.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::GradedShell => "graded_shell",
+            Self::GradedSolid => "graded_solid",
+            Self::VoxelSolid => "voxel_solid",
+            Self::VoxelShell => "voxel_shell",
+            Self::VoxelHeat => "voxel_heat",
+            Self::GradedHeat => "graded_heat",
+            Self::VoxelCurrent => "voxel_current",
+            Self::GradedCurrent => "graded_current",
+        }
+    }
+
+    /// The mechanical deck on whose mesh it is.
+    #[must_use]
+    pub fn mesh(self) -> Self {
+        match self {
+            Self::VoxelHeat | Self::VoxelCurrent => Self::VoxelSolid,
+            Self::GradedHeat | Self::GradedCurrent => Self::GradedSolid,
+            other => other,
+        }
+    }
+
+    /// Keys of a material that the deck cannot do without.
+    fn needs(self) -> &'static [(&'static str, fn(&Material) -> Option<f64>)] {
+        match self {
+            Self::VoxelHeat | Self::GradedHeat => &[("conductivity_w_mk", |m| m.conductivity_w_mk)],
+            Self::VoxelCurrent | Self::GradedCurrent => &[
+                ("conductivity_w_mk", |m| m.conductivity_w_mk),
+                ("electrical_conductivity_s_m", |m| m.electrical_conductivity_s_m),
+            ],
+            _ => &[],
+        }
+    }
 }
 
 /// A solver that decks are written for.
@@ -212,6 +259,20 @@ pub enum DeckSolver {
     Abaqus,
     /// CalculiX.
     Calculix,
+    /// Any program that reads meshes as NASTRAN bulk data, such as COMSOL.
+    Nastran,
+}
+
+impl DeckSolver {
+    /// The folder of its decks and their ending.
+    #[must_use]
+    pub fn folder_and_ending(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Abaqus => ("abaqus", "inp"),
+            Self::Calculix => ("calculix", "inp"),
+            Self::Nastran => ("nastran", "bdf"),
+        }
+    }
 }
 
 /// How an ABAQUS deck is laid out.
@@ -381,7 +442,22 @@ impl DesignInput {
             return Err(InputError::new("name", quoted(&self.name), "this is not usable as a file name")
                 .help("use at most 100 letters, digits, blanks, - and _"));
         }
-        self.phase_set().map(|_| ())
+        if self.voxels.matching == Match::Calibrated && self.materials.phases.len() != 2 {
+            let problem = format!("a calibrated mixture rule is for two phases, not {}", self.materials.phases.len());
+            return Err(InputError::new("voxels.match", "\"calibrated\"", problem)
+                .help("use match = \"modulus\" or \"stiffness\""));
+        }
+        let phases = self.phase_set()?;
+        for kind in &self.decks.write {
+            for (key, value) in kind.needs() {
+                if let Some(lacking) = phases.phases().iter().find(|m| value(m).is_none()) {
+                    let problem = format!("this deck needs {key}, which {} does not have", quoted(&lacking.name));
+                    return Err(InputError::new("decks.write", quoted(kind.name()), problem)
+                        .help("use phases that have it, or give it in a [[materials.custom]] table of that name"));
+                }
+            }
+        }
+        Ok(())
     }
 }
 

@@ -393,9 +393,10 @@ const DESIGN: &[Parameter] = &[
     },
     Parameter {
         key: "voxels.match",
-        kind: Kind::Choice { choices: &["modulus", "stiffness"] },
+        kind: Kind::Choice { choices: &["modulus", "stiffness", "calibrated"] },
         default: Some("\"modulus\""),
-        description: "Whether a slice's mean modulus or its bending stiffness meets its target.",
+        description: "What meets its target in a slice: the mean modulus, the bending stiffness of plane sections, or (two \
+                      phases) the modulus in bending by a rule calibrated on random cells.",
         ..BASE
     },
     Parameter {
@@ -407,16 +408,29 @@ const DESIGN: &[Parameter] = &[
     },
     Parameter {
         key: "decks.write",
-        kind: Kind::Choices { choices: &["graded_shell", "graded_solid", "voxel_solid", "voxel_shell"] },
+        kind: Kind::Choices {
+            choices: &[
+                "graded_shell",
+                "graded_solid",
+                "voxel_solid",
+                "voxel_shell",
+                "voxel_heat",
+                "graded_heat",
+                "voxel_current",
+                "graded_current",
+            ],
+        },
         default: Some("[\"graded_shell\", \"graded_solid\", \"voxel_solid\", \"voxel_shell\"]"),
-        description: "Which decks are written; an empty list writes none.",
+        description: "Which decks are written; an empty list writes none. Heat and current need phases that have the \
+                      conductivities.",
         ..BASE
     },
     Parameter {
         key: "decks.solvers",
-        kind: Kind::Choices { choices: &["abaqus", "calculix"] },
+        kind: Kind::Choices { choices: &["abaqus", "calculix", "nastran"] },
         default: Some("[\"abaqus\", \"calculix\"]"),
-        description: "For which solvers; shell decks are for ABAQUS only.",
+        description: "For which solvers; shells and current are for ABAQUS only, nastran writes the meshes of the solids for \
+                      COMSOL and others.",
         ..BASE
     },
     Parameter {

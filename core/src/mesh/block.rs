@@ -42,11 +42,11 @@ pub struct Block {
 }
 
 impl Block {
-    /// A block of equally long slices. `across` and `layers` must be even for the mid-line to have nodes, and
-    /// [`Spacing::Width`] must have one width a plane.
+    /// A block of equally long slices. `across` must be even and [`Spacing::Width`] must have one width a plane; with an
+    /// odd number of layers the mid-line lies between two levels of nodes and has none itself.
     #[must_use]
     pub fn new(length: f64, thickness: f64, layers: usize, across: Vec<usize>, spacing: Spacing) -> Self {
-        debug_assert!(!across.is_empty() && layers.is_multiple_of(2) && across.iter().all(|n| n.is_multiple_of(2)));
+        debug_assert!(!across.is_empty() && layers > 0 && across.iter().all(|n| n.is_multiple_of(2)));
         let mut block = Self {
             length,
             thickness,
@@ -133,7 +133,7 @@ impl Block {
         self.slice_elements[slice]
     }
 
-    /// Node of the mid-line in a plane.
+    /// Node of the mid-line in a plane; the one below it where the number of layers is odd.
     #[must_use]
     pub fn midline_node(&self, plane: usize) -> u64 {
         let across = self.plane_across(plane) as u64;
@@ -182,7 +182,7 @@ impl Block {
         self.thickness * (level as f64 / self.layers as f64 - 0.5) + rise
     }
 
-    /// Nodes of the mid-line, mm, rim to hub.
+    /// Nodes of the mid-line, mm, rim to hub; the number of layers must be even.
     #[must_use]
     pub fn midline(&self) -> Vec<[f64; 3]> {
         (0..self.planes()).map(|p| [self.x(p), 0.0, self.z(p, self.layers / 2)]).collect()

@@ -49,6 +49,7 @@ pub fn document(
         "target_fit": design.target().and_then(|t| t.fit),
         "inflections_mm": design.inverse().map(|i| i.inflections.iter().map(|p| p.s).collect::<Vec<f64>>()),
         "phases": phases,
+        "mixture_rule": design.mixture_rule(),
         "profile": {
             "s_mm": profile.s,
             "theta_deg": degrees,

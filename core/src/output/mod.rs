@@ -6,6 +6,7 @@ pub mod json;
 pub mod provenance;
 pub mod summary;
 pub mod tables;
+pub mod unit_cells;
 pub mod write;
 
 pub use provenance::Provenance;

@@ -70,6 +70,24 @@ pub fn write_slices(design: &Design, out: &mut dyn Write) -> std::io::Result<()>
     csv.flush()
 }
 
+/// Writes `nastran/fractions.csv`: every fifth station of the profile, with the fractions of the phases there.
+///
+/// # Errors
+/// What the writer returns.
+pub fn write_fractions(design: &Design, out: &mut dyn Write) -> std::io::Result<()> {
+    let phases = design.phases().phases();
+    let profile = design.profile();
+    let mut csv = csv::Writer::from_writer(out);
+    let labels = phases.iter().map(|p| format!("fraction_{}", p.label()));
+    csv.write_record(["x_mm", "width_mm", "modulus_mpa"].map(str::to_owned).into_iter().chain(labels))?;
+    for i in (0..profile.s.len()).step_by(5) {
+        let fractions = design.fractions(profile.modulus_mpa[i]).values;
+        let row = [profile.s[i], profile.width[i], profile.modulus_mpa[i]].into_iter();
+        csv.write_record(row.chain(fractions.into_iter().take(phases.len())).map(number))?;
+    }
+    csv.flush()
+}
+
 /// Ten significant digits, without trailing zeros: more than any input is known to, and the same on every platform.
 pub(crate) fn number(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {

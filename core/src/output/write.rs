@@ -10,7 +10,7 @@ use crate::design::Design;
 use crate::error::Error;
 use crate::fabrication::record::Earlier;
 use crate::fabrication::{self, Plan};
-use crate::input::DeckKind;
+use crate::input::{DeckKind, DeckSolver};
 use crate::progress::Progress;
 use crate::{SCHEMA, report};
 
@@ -19,7 +19,7 @@ const OTHER_FILES: u64 = 8 << 20;
 
 /// Every file this version may write besides the ones of a verification; an earlier design's are removed if the new one
 /// does not have them.
-const KNOWN_FILES: [&str; 10] = [
+const KNOWN_FILES: [&str; 19] = [
     "design.json",
     "profile.csv",
     "slices.csv",
@@ -30,7 +30,19 @@ const KNOWN_FILES: [&str; 10] = [
     "abaqus/voxel_shell.inp",
     "calculix/graded_solid.inp",
     "calculix/voxel_solid.inp",
+    "abaqus/voxel_heat.inp",
+    "abaqus/graded_heat.inp",
+    "abaqus/voxel_current.inp",
+    "abaqus/graded_current.inp",
+    "calculix/voxel_heat.inp",
+    "calculix/graded_heat.inp",
+    "nastran/voxel_solid.bdf",
+    "nastran/graded_solid.bdf",
+    FRACTIONS,
 ];
+
+/// Fractions along the spoke, for programs that read a mesh and interpolate.
+const FRACTIONS: &str = "nastran/fractions.csv";
 
 /// What may be written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -42,7 +54,7 @@ pub struct WriteOptions {
 /// A kind of output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OutputKind {
-    /// One of the decks, for every solver the design names.
+    /// One of the mechanical decks and those of heat and current on its mesh, for every solver the design names.
     Deck(DeckKind),
     /// `profile.csv` and `slices.csv`.
     Tables,
@@ -120,7 +132,8 @@ pub fn write_outputs(
     };
     // The bytes done are none: asking is all that this is about.
     let mut decks = deck::plan_unless(design, &|| !progress(0)).map_err(|_| Error::Cancelled)?;
-    decks.retain(|d| wants(OutputKind::Deck(d.kind)));
+    decks.retain(|d| wants(OutputKind::Deck(d.kind.mesh())));
+    let fractions = decks.iter().any(|d| d.solver == DeckSolver::Nastran);
     let fabrication = match wants(OutputKind::Fabrication) {
         true => Some(Plan::of_design(design, &provenance, options.allow_large)?),
         false => None,
@@ -137,7 +150,7 @@ pub fn write_outputs(
     let mut before = 0;
     for plan in &decks {
         let counted = |bytes: u64| progress(before + bytes);
-        staging.write(plan.relative_path(), |out| deck::write(design, plan, &provenance, out, &counted))?;
+        staging.write(&plan.relative_path(), |out| deck::write(design, plan, &provenance, out, &counted))?;
         before += plan.bytes;
     }
     let earlier = Earlier::read(folder);
@@ -150,8 +163,11 @@ pub fn write_outputs(
     };
     before += estimate.work();
 
-    let mut files: Vec<(String, String)> = decks.iter().map(|d| (d.relative_path().to_owned(), describe(d))).collect();
+    let mut files: Vec<(String, String)> = decks.iter().map(|d| (d.relative_path(), describe(d))).collect();
     files.extend(made.made.iter().flat_map(|(_, made)| made.listed.iter().cloned()));
+    if fractions {
+        files.push((FRACTIONS.to_owned(), "fractions of the phases along the spoke".to_owned()));
+    }
     let mut others = |kind: OutputKind, name: &str, what: String| {
         if wants(kind) {
             files.push((name.to_owned(), what));
@@ -164,9 +180,13 @@ pub fn write_outputs(
     others(OutputKind::Design, "design.json", "the whole result, for programs".to_owned());
     // The page lists groups of files, the record every one.
     let is_group = |name: &&str| made.made.iter().any(|(_, made)| made.listed.iter().any(|(group, _)| group == name));
-    let mut names: Vec<&str> = decks.iter().map(DeckPlan::relative_path).collect();
+    let paths: Vec<String> = decks.iter().map(DeckPlan::relative_path).collect();
+    let mut names: Vec<&str> = paths.iter().map(String::as_str).collect();
     names.extend(made.files.iter().map(String::as_str));
     names.extend(files.iter().skip(decks.len()).map(|(name, _)| name.as_str()).filter(|name| !is_group(name)));
+    if fractions {
+        staging.write(FRACTIONS, |out| tables::write_fractions(design, out))?;
+    }
     if wants(OutputKind::Tables) {
         staging.write("profile.csv", |out| tables::write_profile(design, out))?;
         staging.write("slices.csv", |out| tables::write_slices(design, out))?;

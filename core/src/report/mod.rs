@@ -19,6 +19,7 @@ mod palette;
 mod svg;
 mod tables;
 mod text;
+pub mod unit_cells;
 pub mod verification;
 
 pub use error::ReportError;

@@ -15,6 +15,36 @@ pub enum Quantity {
     Displacement,
     /// Reaction forces, N; of a rotation node, moments, N mm.
     Force,
+    /// Sum of the reaction forces of the set, N: one row without a node.
+    TotalForce,
+    /// Temperatures, K, as first components.
+    Temperature,
+    /// Heat that enters at the nodes, mW, as first components.
+    Heat,
+    /// Sum of the heat that enters at the set, mW: one row without a node.
+    TotalHeat,
+}
+
+impl Quantity {
+    /// Beginnings of the blocks' headers.
+    const HEADERS: [(&'static str, Self); 6] = [
+        ("displacements (", Self::Displacement),
+        ("forces (", Self::Force),
+        ("total force (", Self::TotalForce),
+        ("temperatures ", Self::Temperature),
+        ("heat generation ", Self::Heat),
+        ("total heat generation ", Self::TotalHeat),
+    ];
+
+    /// Numbers in a row, and whether a node's label stands before them.
+    fn row(self) -> (usize, bool) {
+        match self {
+            Self::Displacement | Self::Force => (3, true),
+            Self::TotalForce => (3, false),
+            Self::Temperature | Self::Heat => (1, true),
+            Self::TotalHeat => (1, false),
+        }
+    }
 }
 
 /// One block: a quantity of a node set at one time.
@@ -26,11 +56,11 @@ pub struct NodePrint {
     pub set: String,
     /// What is printed.
     pub quantity: Quantity,
-    /// Node label and components.
+    /// Node label, zero for a sum, and components; those of a scalar but the first are zero.
     pub rows: Vec<(u64, [f64; 3])>,
 }
 
-/// Reads displacements and forces; other blocks are skipped.
+/// Reads displacements, forces, temperatures and heat; other blocks are skipped.
 ///
 /// ```
 /// use voxelastica_core::results::ccx_dat::{Quantity, parse};
@@ -56,7 +86,7 @@ pub fn parse(text: &str) -> Result<Vec<NodePrint>, ResultError> {
             inside = block.is_some();
             blocks.extend(block);
         } else if inside && let Some(block) = blocks.last_mut() {
-            let Some(row) = row(line) else {
+            let Some(row) = row(line, block.quantity) else {
                 return Err(ResultError::Row { line: i + 1, text: line.trim().chars().take(60).collect() });
             };
             block.rows.push(row);
@@ -77,23 +107,18 @@ fn is_text(line: &str) -> bool {
 
 fn header(line: &str) -> Option<NodePrint> {
     let line = line.trim();
-    let quantity = if line.starts_with("displacements (") {
-        Quantity::Displacement
-    } else if line.starts_with("forces (") {
-        Quantity::Force
-    } else {
-        return None;
-    };
+    let (_, quantity) = Quantity::HEADERS.into_iter().find(|(start, _)| line.starts_with(start))?;
     let (_, rest) = line.split_once(" for set ")?;
     let (set, time) = rest.split_once(" and time ")?;
     Some(NodePrint { time: number(time.trim())?, set: set.trim().to_owned(), quantity, rows: Vec::new() })
 }
 
-fn row(line: &str) -> Option<(u64, [f64; 3])> {
+fn row(line: &str, quantity: Quantity) -> Option<(u64, [f64; 3])> {
     let mut words = line.split_ascii_whitespace();
-    let node = words.next()?.parse().ok()?;
+    let (count, labelled) = quantity.row();
+    let node = if labelled { words.next()?.parse().ok()? } else { 0 };
     let mut values = [0.0; 3];
-    for value in &mut values {
+    for value in values.iter_mut().take(count) {
         *value = number(words.next()?)?;
     }
     words.next().is_none().then_some((node, values))
@@ -135,9 +160,28 @@ mod tests {
 ";
 
     #[test]
+    fn temperatures_and_heat_are_read() {
+        let text = " temperatures for set MIDLINE and time  0.1000000E+03\n\n        33  3.161535E+02\n\n heat generation \
+                    for set RIM and time  0.1000000E+03\n\n         1  2.237834E+00\n\n total heat generation for set RIM \
+                    and time  0.1000000E+03\n\n        3.036688E+00\n";
+        let blocks = parse(text).unwrap();
+        let found: Vec<_> = blocks.iter().map(|b| (b.quantity, b.rows[0])).collect();
+        assert_eq!(
+            found,
+            [
+                (Quantity::Temperature, (33, [316.1535, 0.0, 0.0])),
+                (Quantity::Heat, (1, [2.237834, 0.0, 0.0])),
+                (Quantity::TotalHeat, (0, [3.036688, 0.0, 0.0])),
+            ]
+        );
+    }
+
+    #[test]
     fn blocks_are_read_and_others_skipped() {
-        let blocks = parse(DAT).unwrap();
-        assert_eq!(blocks.len(), 2);
+        let mut blocks = parse(DAT).unwrap();
+        assert_eq!(blocks.len(), 3);
+        let total = blocks.remove(1);
+        assert_eq!((total.quantity, total.rows[0].0, total.rows[0].1[0]), (Quantity::TotalForce, 0, -0.1154966));
         assert_eq!(blocks[0].rows, vec![(11, [16.33802, 0.0, -2.5]), (32, [36.33802, 1.442_423e-115, 0.0])]);
         assert_eq!((blocks[0].time, blocks[1].time), (0.05, 1.0));
         assert_eq!((blocks[1].quantity, blocks[1].set.as_str()), (Quantity::Force, "RP-RIM"));

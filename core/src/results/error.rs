@@ -5,7 +5,7 @@
 #[non_exhaustive]
 pub enum ResultError {
     /// A line that should be a row of numbers.
-    #[error("line {line}: \"{text}\" is not a node label and three finite numbers; the file may be cut short")]
+    #[error("line {line}: \"{text}\" is no row of finite numbers of its block; the file may be cut short")]
     Row {
         /// Line number, from one.
         line: usize,

@@ -13,6 +13,7 @@ use super::pattern::Pattern;
 use super::section::{layer_stiffness, section};
 use crate::elastica::forward::Section;
 use crate::micromechanics::PhaseSet;
+use crate::micromechanics::calibration::MixtureRule;
 use crate::progress::{Cancelled, never};
 
 /// Which property of the slice meets its target.
@@ -23,6 +24,8 @@ pub enum Match {
     Modulus,
     /// The bending stiffness of the voxels where they are, about the section's own neutral axis.
     Stiffness,
+    /// The modulus in bending by the rule that cells of the same phases, pattern and layers were found to follow.
+    Calibrated,
 }
 
 /// What a slice should be.
@@ -47,11 +50,11 @@ pub struct Slice {
     pub counts: [u32; 3],
     /// Modulus the slice should have, `E w / w_voxel`, MPa.
     pub modulus_target_mpa: f64,
-    /// Voigt modulus of its voxels, MPa.
+    /// Modulus of its voxels, MPa: Voigt's, or the one of a calibrated rule.
     pub modulus_mpa: f64,
     /// Bending stiffness it should have, `E w t^3 / 12`, N mm^2.
     pub stiffness_target_nmm2: f64,
-    /// Bending properties of its voxels.
+    /// Bending properties of its voxels: plane sections of the voxels where they are, or a calibrated rule's stiffness.
     pub section: Section,
     /// The target lies outside what the phases reach.
     pub clamped: bool,
@@ -70,6 +73,23 @@ pub struct Filling<'a> {
     pub seed: u64,
     /// Which property meets its target.
     pub matching: Match,
+    /// The rule of [`Match::Calibrated`]; without one Voigt's rule takes its place.
+    pub rule: Option<&'a MixtureRule>,
+}
+
+impl Filling<'_> {
+    /// The Voigt modulus of the mixture whose modulus by the design's rule is `modulus_mpa`.
+    fn voigt_of(&self, modulus_mpa: f64) -> f64 {
+        let between = |rule: &MixtureRule| {
+            let fraction = rule.fraction(modulus_mpa);
+            (1.0 - fraction) * self.phases.softest() + fraction * self.phases.stiffest()
+        };
+        self.calibrated().map_or(modulus_mpa, between)
+    }
+
+    fn calibrated(&self) -> Option<&MixtureRule> {
+        self.rule.filter(|_| self.matching == Match::Calibrated)
+    }
 }
 
 /// Fills a strip with voxels, slice by slice from rim to hub.
@@ -89,7 +109,7 @@ pub fn fill_unless(
     let moduli = filling.phases.moduli();
     let size = lattice.size_mm;
     let mut slices = match filling.matching {
-        Match::Modulus => counts_by_modulus(lattice, targets, filling, cancelled)?,
+        Match::Modulus | Match::Calibrated => counts_by_modulus(lattice, targets, filling, cancelled)?,
         Match::Stiffness => counts_by_stiffness(lattice, targets, filling, cancelled)?,
     };
     let mut grid = VoxelGrid::new(size, lattice.layers, targets.iter().map(|t| t.half_width).collect());
@@ -100,6 +120,10 @@ pub fn fill_unless(
         let order = filling.pattern.order(slice.half_width, lattice.layers, filling.seed, i);
         place(voxels, &order, &slice.counts);
         slice.section = section(&layer_stiffness(voxels, lattice.layers, &moduli, size), size);
+        if filling.calibrated().is_some() {
+            let (width, thickness) = (2.0 * slice.half_width as f64 * size, lattice.layers as f64 * size);
+            slice.section.stiffness = slice.modulus_mpa * width * thickness.powi(3) / 12.0;
+        }
         Some(())
     })?;
     Some((grid, slices))
@@ -141,7 +165,8 @@ fn counts_by_modulus(
                 return None;
             }
             let mut slice = blank(lattice, i, target, filling);
-            (slice.counts, carry) = count(slice.modulus_target_mpa, &slice, lattice, filling, carry);
+            let voigt = filling.voigt_of(slice.modulus_target_mpa);
+            (slice.counts, carry) = count(voigt, &slice, lattice, filling, carry);
             slice.modulus_mpa = mean_modulus(&slice.counts, filling);
             Some(slice)
         })
@@ -194,6 +219,9 @@ fn count(modulus: f64, slice: &Slice, lattice: &Lattice, filling: &Filling<'_>, 
 
 fn mean_modulus(counts: &[u32; 3], filling: &Filling<'_>) -> f64 {
     let total: u32 = counts.iter().sum();
+    if let Some(rule) = filling.calibrated() {
+        return rule.modulus(f64::from(counts[1]) / f64::from(total.max(1)));
+    }
     let sum: f64 = counts.iter().zip(filling.phases.moduli()).map(|(n, e)| f64::from(*n) * e).sum();
     sum / f64::from(total.max(1))
 }

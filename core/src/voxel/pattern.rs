@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// How the phases of a slice are arranged. The softest phase takes the places named first, the stiffest the last ones,
 /// an intermediate one those between.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Pattern {
     /// A seeded shuffle of the whole slice.

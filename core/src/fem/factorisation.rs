@@ -1,0 +1,242 @@
+//! Sparse factors of the tangent.
+//!
+//! `K = L D L^T` without pivoting, by faer's supernodal algorithm; the structure of `L` is found once a mesh. Unpivoted
+//! factors are as good as pivoted ones for definite matrices and usually for the mildly indefinite ones near an unstable
+//! branch; where a pivot vanishes or the solution's residual shows that they are not, the factors are computed again with
+//! Bunch and Kaufman's pivoting inside the supernodes. By Sylvester's law of inertia the negative entries of `D` count the
+//! negative eigenvalues of `K`: directions in which the strip would move away from the equilibrium by itself.
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::ldlt::factor::LdltRegularization;
+use faer::perm::PermRef;
+use faer::sparse::linalg::SupernodalThreshold;
+use faer::sparse::linalg::cholesky::supernodal::SupernodalLdltRef;
+use faer::sparse::linalg::cholesky::{
+    CholeskySymbolicParams, IntranodeLbltRef, LdltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
+    factorize_symbolic_cholesky,
+};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::{Conj, MatMut, Par, Side, Spec};
+
+use super::FemError;
+use super::pattern::Pattern;
+
+/// Residual of a linear solution, relative to the right-hand side, above which factors count as useless.
+const USELESS: f64 = 1e-3;
+/// Residual at which a solution is not refined any further.
+const REFINED: f64 = 1e-10;
+/// Steps of iterative refinement.
+const REFINEMENTS: usize = 3;
+
+/// Structure and values of the factors.
+pub struct Factorisation {
+    symbolic: SymbolicCholesky<usize>,
+    values: Vec<f64>,
+    memory: MemBuffer,
+    pivoting: Option<Pivoting>,
+    negative: usize,
+}
+
+/// What pivoted factors have besides.
+struct Pivoting {
+    subdiagonal: Vec<f64>,
+    forward: Vec<usize>,
+    inverse: Vec<usize>,
+}
+
+impl std::fmt::Debug for Factorisation {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Factorisation").field("entries", &self.values.len()).finish_non_exhaustive()
+    }
+}
+
+fn parallel() -> Par {
+    Par::rayon(0)
+}
+
+impl Factorisation {
+    /// Finds the structure of the factors and takes the memory for them, unless that is more than `limit` bytes.
+    ///
+    /// # Errors
+    /// [`FemError::Memory`], [`FemError::Sparse`].
+    pub fn new(pattern: &Pattern, limit: Option<u64>) -> Result<Self, FemError> {
+        let unknowns = pattern.unknowns();
+        let sparse = |what: &dyn std::fmt::Debug| FemError::Sparse(format!("{what:?}"));
+        // With the order as it is, faer analyses an upper triangle and factors a lower one.
+        let (columns, rows) = upper(pattern);
+        let structure = SymbolicSparseColMatRef::new_checked(unknowns, unknowns, &columns, None, &rows);
+        let parameters = CholeskySymbolicParams {
+            supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
+            ..CholeskySymbolicParams::default()
+        };
+        let symbolic = factorize_symbolic_cholesky(structure, Side::Upper, SymmetricOrdering::Identity, parameters)
+            .map_err(|e| sparse(&e))?;
+        let scratch = symbolic
+            .factorize_numeric_ldlt_scratch::<f64>(parallel(), Spec::default())
+            .or(symbolic.factorize_numeric_intranode_lblt_scratch::<f64>(parallel(), Spec::default()))
+            .or(symbolic.solve_in_place_scratch::<f64>(1, parallel()));
+        let needed = 8 * symbolic.len_val() as u64 + scratch.unaligned_bytes_required() as u64;
+        let refused = || FemError::Memory { unknowns, needed, limit: limit.unwrap_or(needed) };
+        if limit.is_some_and(|limit| needed > limit) {
+            return Err(refused());
+        }
+        let memory = MemBuffer::try_new(scratch).map_err(|_| refused())?;
+        let mut values = Vec::new();
+        values.try_reserve_exact(symbolic.len_val()).map_err(|_| refused())?;
+        values.resize(symbolic.len_val(), 0.0);
+        Ok(Self { symbolic, values, memory, pivoting: None, negative: 0 })
+    }
+
+    /// Entries of the factors.
+    #[must_use]
+    pub fn entries(&self) -> usize {
+        self.values.len()
+    }
+
+    /// Negative eigenvalues of the tangent that was factored last.
+    #[must_use]
+    pub fn negative(&self) -> usize {
+        self.negative
+    }
+
+    /// Factors a tangent and solves `K x = right`; `None` where it is singular.
+    pub fn solve(&mut self, pattern: &Pattern, tangent: &[f64], right: &[f64]) -> Option<Vec<f64>> {
+        if self.factor(pattern, tangent)
+            && let Some(x) = self.refined(pattern, tangent, right)
+        {
+            return Some(x);
+        }
+        self.factor_with_pivots(pattern, tangent);
+        self.refined(pattern, tangent, right)
+    }
+
+    /// Solves with the factors there are, and refines; `None` where the residual stays large.
+    fn refined(&mut self, pattern: &Pattern, tangent: &[f64], right: &[f64]) -> Option<Vec<f64>> {
+        let size = norm(right);
+        let mut x = vec![0.0; right.len()];
+        let mut residual = right.to_vec();
+        let mut error = 1.0;
+        for _ in 0..REFINEMENTS {
+            self.apply(&mut residual);
+            x.iter_mut().zip(&residual).for_each(|(x, d)| *x += d);
+            let product = pattern.multiply(tangent, &x);
+            residual = right.iter().zip(&product).map(|(b, p)| b - p).collect();
+            error = norm(&residual) / size.max(f64::MIN_POSITIVE);
+            if !error.is_finite() || error <= REFINED {
+                break;
+            }
+        }
+        (error <= USELESS).then_some(x)
+    }
+
+    /// Unpivoted factors; `false` where a pivot vanished.
+    fn factor(&mut self, pattern: &Pattern, tangent: &[f64]) -> bool {
+        self.pivoting = None;
+        let matrix = SparseColMatRef::new(structure(pattern), tangent);
+        let done = self.symbolic.factorize_numeric_ldlt(
+            &mut self.values,
+            matrix,
+            Side::Lower,
+            LdltRegularization::default(),
+            parallel(),
+            MemStack::new(&mut self.memory),
+            Spec::default(),
+        );
+        if done.is_err() {
+            return false;
+        }
+        let diagonal = self.diagonal();
+        self.negative = diagonal.iter().filter(|d| **d < 0.0).count();
+        diagonal.iter().all(|d| d.is_finite() && *d != 0.0)
+    }
+
+    fn factor_with_pivots(&mut self, pattern: &Pattern, tangent: &[f64]) {
+        let n = pattern.unknowns();
+        let mut pivoting = Pivoting { subdiagonal: vec![0.0; n], forward: vec![0; n], inverse: vec![0; n] };
+        let matrix = SparseColMatRef::new(structure(pattern), tangent);
+        self.symbolic.factorize_numeric_intranode_lblt(
+            &mut self.values,
+            &mut pivoting.subdiagonal,
+            &mut pivoting.forward,
+            &mut pivoting.inverse,
+            matrix,
+            Side::Lower,
+            parallel(),
+            MemStack::new(&mut self.memory),
+            Spec::default(),
+        );
+        let diagonal = self.diagonal();
+        // A block of two is indefinite: one eigenvalue of each sign.
+        let mut negative = 0;
+        let mut i = 0;
+        while i < n {
+            if pivoting.subdiagonal[i] == 0.0 {
+                negative += usize::from(diagonal[i] < 0.0);
+                i += 1;
+            } else {
+                negative += 1;
+                i += 2;
+            }
+        }
+        self.negative = negative;
+        self.pivoting = Some(pivoting);
+    }
+
+    fn apply(&mut self, x: &mut [f64]) {
+        let n = x.len();
+        let stack = MemStack::new(&mut self.memory);
+        let right = MatMut::from_column_major_slice_mut(x, n, 1);
+        match &self.pivoting {
+            None => {
+                LdltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(Conj::No, right, parallel(), stack)
+            }
+            Some(pivoting) => {
+                let order = PermRef::new_checked(&pivoting.forward, &pivoting.inverse, n);
+                IntranodeLbltRef::new(&self.symbolic, &self.values, &pivoting.subdiagonal, order)
+                    .solve_in_place_with_conj(Conj::No, right, parallel(), stack);
+            }
+        }
+    }
+
+    /// The diagonal of `D`.
+    fn diagonal(&self) -> Vec<f64> {
+        let SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.raw() else { return Vec::new() };
+        let factors = SupernodalLdltRef::new(symbolic, &self.values);
+        (0..symbolic.n_supernodes())
+            .flat_map(|s| {
+                let matrix = factors.supernode(s).val();
+                (0..matrix.ncols()).map(move |j| matrix[(j, j)])
+            })
+            .collect()
+    }
+}
+
+fn structure(pattern: &Pattern) -> SymbolicSparseColMatRef<'_, usize> {
+    let n = pattern.unknowns();
+    SymbolicSparseColMatRef::new_checked(n, n, &pattern.columns, None, &pattern.rows)
+}
+
+/// The pattern's transpose: columns and ascending rows of the upper triangle.
+fn upper(pattern: &Pattern) -> (Vec<usize>, Vec<usize>) {
+    let n = pattern.unknowns();
+    let mut columns = vec![0; n + 1];
+    for row in &pattern.rows {
+        columns[row + 1] += 1;
+    }
+    for i in 0..n {
+        columns[i + 1] += columns[i];
+    }
+    let mut next = columns.clone();
+    let mut rows = vec![0; pattern.rows.len()];
+    for column in 0..n {
+        for row in &pattern.rows[pattern.columns[column]..pattern.columns[column + 1]] {
+            rows[next[*row]] = column;
+            next[*row] += 1;
+        }
+    }
+    (columns, rows)
+}
+
+fn norm(x: &[f64]) -> f64 {
+    x.iter().map(|v| v * v).sum::<f64>().sqrt()
+}
