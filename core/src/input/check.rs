@@ -150,7 +150,8 @@ fn fill_defaults(root: &mut Map<String, Value>, kind: &str) {
     }
 }
 
-fn check_value(parameter: &Parameter, path: &str, value: &Value) -> Result<(), InputError> {
+/// Checks one value against its parameter's type and range.
+pub(super) fn check_value(parameter: &Parameter, path: &str, value: &Value) -> Result<(), InputError> {
     let unit = parameter.unit.map(|u| format!(" {u}")).unwrap_or_default();
     let wrong = |problem: String| Err(InputError::new(path, show(value), problem).help(parameter.description));
     match (&parameter.kind, value) {
