@@ -171,6 +171,8 @@ def test_wrong_input_is_named(program: Path, tmp_path: Path) -> None:
     assert result.code == 2 and "design.json" in result.err
     result = run("conduct", folder, "--measure-at", "1.5")
     assert result.code == 2 and "measure_at" in result.err
+    result = run("conduct", folder, "--current=-1")
+    assert result.code == 2 and "current_a" in result.err
     result = run("conduct", folder, "--threshold", "0.5", "--threshold-of", "value")
     assert result.code == 2 and "conduction.threshold" in result.err
     result = run("conduct", folder, "--shape", "morphed")

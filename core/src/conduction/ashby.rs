@@ -29,6 +29,9 @@ const STEPS: u32 = 10;
 /// The coupon: length, width, thickness and voxel, mm.
 const COUPON: [f64; 4] = [20.0, 6.0, 2.0, 0.5];
 
+/// From a conductivity per mm to one per m.
+const PER_METRE: f64 = 1e3;
+
 /// Points of a bound.
 const BOUND_POINTS: u32 = 50;
 
@@ -97,9 +100,9 @@ pub fn conductivity_bounds(first: f64, second: f64, second_fraction: f64) -> (f6
 /// # Errors
 /// [`Error::Input`] for phases without that property, others of [`steady::solve`]; [`Error::Cancelled`].
 pub fn chart(input: &DesignInput, property: Property, watch: Watch<'_>) -> Result<Ashby, Error> {
-    let (unit, quantity, scale) = match property {
-        Property::ElectricalConductivity => ("S/m", "electrical conductivity", 1e3),
-        _ => ("W/(m K)", "thermal conductivity", 1e3),
+    let (unit, quantity) = match property {
+        Property::ElectricalConductivity => ("S/m", "electrical conductivity"),
+        _ => ("W/(m K)", "thermal conductivity"),
     };
     let set = input.phase_set()?;
     let (soft, stiff) = match set.phases() {
@@ -107,14 +110,16 @@ pub fn chart(input: &DesignInput, property: Property, watch: Watch<'_>) -> Resul
         _ => return Err(Error::Internal("a set of less than two phases".to_owned())),
     };
     let [k_soft, k_stiff] = [&soft, &stiff].map(|m| property.of(m));
-    let (k_soft, k_stiff) = (k_soft? * scale, k_stiff? * scale);
+    let (k_soft, k_stiff) = (k_soft? * PER_METRE, k_stiff? * PER_METRE);
     let mut mixtures = Vec::new();
     let total = PATTERNS.len() * (STEPS as usize - 1);
     for pattern in PATTERNS {
         for step in 1..STEPS {
-            watch.at(mixtures.len() as f64 / total as f64)?;
+            let share = mixtures.len() as f64 / total as f64;
+            watch.at(share)?;
             let fraction = f64::from(step) / f64::from(STEPS);
-            mixtures.push(mixture(input, &soft, &stiff, pattern, fraction, property, scale)?);
+            let part = watch.part(share, share);
+            mixtures.push(mixture(input, [&soft, &stiff], pattern, fraction, property, part)?);
         }
     }
     let bounds = (0..=BOUND_POINTS)
@@ -139,12 +144,11 @@ pub fn chart(input: &DesignInput, property: Property, watch: Watch<'_>) -> Resul
 /// One coupon, filled and solved.
 fn mixture(
     input: &DesignInput,
-    soft: &Material,
-    stiff: &Material,
+    phases: [&Material; 2],
     pattern: Pattern,
     fraction: f64,
     property: Property,
-    scale: f64,
+    watch: Watch<'_>,
 ) -> Result<Mixture, Error> {
     let [length_mm, width_mm, thickness_mm, size_mm] = COUPON;
     let mut coupon = input.clone();
@@ -152,7 +156,7 @@ fn mixture(
         TargetInput::Strip { width_mm, modulus_ratio: None, rigid_fraction: Some(fraction), shortening: None };
     coupon.strips = StripsInput { count: None, length_mm, hub_radius_mm: None, thickness_mm };
     coupon.thrust = None;
-    coupon.materials.phases = vec![soft.name.clone(), stiff.name.clone()];
+    coupon.materials.phases = phases.map(|p| p.name.clone()).to_vec();
     coupon.voxels.size_mm = size_mm;
     coupon.voxels.pattern = pattern;
     coupon.voxels.matching = Match::Modulus;
@@ -164,15 +168,15 @@ fn mixture(
     boundary.give_plane(mesh, 0, 1.0);
     boundary.give_plane(mesh, mesh.cells()[0], 0.0);
     let options = SteadyOptions::default();
-    let found = steady::solve(mesh, &conductivities, &boundary, &options, Watch::silent())?;
-    let (unit, _) = unit_strip(&strip, Watch::silent())?;
+    let found = steady::solve(mesh, &conductivities, &boundary, &options, watch)?;
+    let (unit, _) = unit_strip(&strip, watch)?;
     let slices = design.slices();
     let compliance = slices.iter().map(|s| 1.0 / s.modulus_mpa).sum::<f64>() / slices.len() as f64;
     Ok(Mixture {
         pattern,
         rigid_fraction: strip.fractions().last().copied().unwrap_or(0.0),
         modulus_mpa: 1.0 / compliance,
-        conductivity: scale * found.slice_flux[0] / unit,
+        conductivity: PER_METRE * found.slice_flux[0] / unit,
     })
 }
 

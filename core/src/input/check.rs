@@ -159,7 +159,8 @@ pub(super) fn defaults(table: &str) -> Map<String, Value> {
     keys.filter_map(|(key, text)| Some((key.to_owned(), serde_json::from_str(text).ok()?))).collect()
 }
 
-fn check_value(parameter: &Parameter, path: &str, value: &Value) -> Result<(), InputError> {
+/// Checks one value against its parameter's type and range.
+pub(super) fn check_value(parameter: &Parameter, path: &str, value: &Value) -> Result<(), InputError> {
     let unit = parameter.unit.map(|u| format!(" {u}")).unwrap_or_default();
     let wrong = |problem: String| Err(InputError::new(path, show(value), problem).help(parameter.description));
     match (&parameter.kind, value) {

@@ -1,8 +1,11 @@
 //! The `[conduction]` table: what is heated, how current enters, where and when it is measured.
 
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use super::InputError;
+use super::check::check_value;
+use super::parameters::parameter;
 
 /// Heat and current through a strip.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -86,12 +89,19 @@ impl ConductionInput {
         }
     }
 
-    /// Rules that concern more than a key's type and range.
+    /// Types and ranges of all keys (values may come from elsewhere than a design file), and rules that concern more than that.
     ///
     /// # Errors
     /// [`InputError`] naming the key.
     pub fn validate(&self) -> Result<(), InputError> {
         let key = |name: &str| format!("conduction.{name}");
+        if let Ok(Value::Object(table)) = serde_json::to_value(self) {
+            for (name, value) in &table {
+                if let Some(parameter) = parameter(&key(name)) {
+                    check_value(parameter, &key(name), value)?;
+                }
+            }
+        }
         for (name, times) in [("heat_times_s", &self.heat_times_s), ("current_times_s", &self.current_times_s)] {
             if let Some(time) = times.iter().find(|t| !(**t > 0.0 && t.is_finite())) {
                 return Err(InputError::new(key(name), time, "times must be positive"));
@@ -124,7 +134,7 @@ impl ConductionInput {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::{Map, Value};
+    use serde_json::Map;
 
     use super::*;
     use crate::input::parameters::PARAMETERS;
@@ -146,5 +156,19 @@ mod tests {
         assert!((input.rise_at_threshold() - 0.994_894_155_844).abs() < 1e-9);
         let low = ConductionInput { threshold: 0.5, ..input };
         assert!(low.validate().unwrap_err().to_string().contains("threshold_of"));
+    }
+
+    #[test]
+    fn values_from_elsewhere_are_held_against_the_table() {
+        for (input, key) in [
+            (ConductionInput { current_a: 0.0, ..ConductionInput::default() }, "current_a"),
+            (ConductionInput { rim_temperature_k: f64::NAN, ..ConductionInput::default() }, "rim_temperature_k"),
+            (ConductionInput { heat_times_s: vec![1.0, f64::INFINITY], ..ConductionInput::default() }, "heat_times_s"),
+            (ConductionInput { graded_elements: [0, 1, 1], ..ConductionInput::default() }, "graded_elements"),
+        ] {
+            let error = input.validate().unwrap_err().to_string();
+            assert!(error.contains(key), "{error}");
+        }
+        ConductionInput::default().validate().unwrap();
     }
 }
