@@ -6,22 +6,17 @@ use voxelastica_core::conduction::output::{Results, WriteOptions, stem, write};
 use voxelastica_core::conduction::pcg::Watch;
 use voxelastica_core::conduction::strip::{Model, Property, Shape, Strip};
 use voxelastica_core::input::{ConductionInput, Electrode, ThresholdOf};
-use voxelastica_core::{Design, DesignInput, Error, InputError, Limits};
+use voxelastica_core::{Design, Error};
 
-use super::figures;
+use super::{designed, figures};
 use crate::args::{ConductModel, ConductOptions, ConductShape, ElectrodeChoice, Flow, Regime, ThresholdChoice};
 use crate::console::Console;
 
 /// Solves heat and current on a design's strip.
 pub fn run(options: &ConductOptions, console: &Console) -> Result<u8, Error> {
-    let path = options.folder.join("design.json");
-    if !path.is_file() {
-        let error = InputError::new("", "", "there is no design.json").help("run voxelastica design first");
-        return Err(Error::Input(error.in_file(&options.folder.display().to_string())));
-    }
-    let shown = path.display().to_string();
+    let design = designed(&options.folder)?;
+    let shown = options.folder.join("design.json").display().to_string();
     let located = |error: Error| error.in_file(&shown);
-    let design = Design::compute(&DesignInput::read(&path)?, Limits { allow_large: true })?;
     let input = parameters(&design, options);
     input.validate().map_err(|e| located(Error::Input(e)))?;
 

@@ -136,6 +136,7 @@ fn phase(text: &str) -> Result<Material, InputError> {
         density_kg_m3: None,
         conductivity_w_mk: None,
         specific_heat_j_kgk: None,
+        relative_permittivity: None,
         electrical_conductivity_s_m: None,
         max_strain: None,
     })
