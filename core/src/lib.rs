@@ -52,6 +52,7 @@ pub mod deck;
 pub mod design;
 pub mod elastica;
 mod error;
+pub mod fabrication;
 pub mod flower;
 pub mod input;
 pub mod materials;
