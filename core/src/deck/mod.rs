@@ -12,7 +12,7 @@ mod graded_shell;
 mod graded_solid;
 mod keywords;
 mod layout;
-mod number;
+pub(crate) mod number;
 mod schedule;
 mod shell;
 mod sink;

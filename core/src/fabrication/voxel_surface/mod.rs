@@ -24,6 +24,7 @@
 //! ```
 
 pub mod contact;
+mod indexed;
 pub mod rectangles;
 pub mod slab;
 pub mod template;

@@ -1,0 +1,172 @@
+//! What is written as a solid: a closed, oriented triangle surface, given piece by piece.
+
+use std::io;
+
+use super::voxel_surface::{SurfaceError, VoxelSurface, signed_volume};
+use crate::progress::Cancelled;
+
+/// A point, mm.
+pub type Point = [f64; 3];
+
+/// What keeps a solid from being written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SolidError {
+    /// The surface cannot be made.
+    #[error(transparent)]
+    Surface(#[from] SurfaceError),
+    /// More elements than the format can number.
+    #[error("the surface has {count} {what}, more than the {limit} that {format} can number; use larger voxels")]
+    TooMany {
+        /// How many there are.
+        count: u64,
+        /// Of what.
+        what: &'static str,
+        /// The format.
+        format: &'static str,
+        /// How many it can number.
+        limit: u64,
+    },
+    /// The file system.
+    #[error(transparent)]
+    Io(#[from] io::Error),
+    /// A defect: a surface did not come out the same twice.
+    #[error("a surface of {announced} triangles had {written} when it was written")]
+    Miscounted {
+        /// Triangles announced.
+        announced: u64,
+        /// Triangles written.
+        written: u64,
+    },
+}
+
+impl From<zip::result::ZipError> for SolidError {
+    fn from(error: zip::result::ZipError) -> Self {
+        Self::Io(error.into())
+    }
+}
+
+/// A piece of an indexed surface: new vertices, and triangles of vertices numbered over all pieces from zero.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Piece {
+    /// Vertices that no earlier piece has.
+    pub vertices: Vec<Point>,
+    /// Triangles, counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// Takes one piece after the other.
+pub type TakePiece<'a> = &'a mut dyn FnMut(Piece) -> Result<(), SolidError>;
+
+/// Takes triangles a few thousand at a time.
+pub type TakeFacets<'a> = &'a mut dyn FnMut(&[[Point; 3]]) -> Result<(), SolidError>;
+
+/// A solid. Both ways of walking through it give the same triangles in the same order every time.
+pub trait Solid: Sync {
+    /// Number of triangles.
+    ///
+    /// # Errors
+    /// [`SurfaceError::Cancelled`].
+    fn count(&self, cancelled: Cancelled<'_>) -> Result<u64, SolidError>;
+
+    /// The triangles.
+    ///
+    /// # Errors
+    /// [`SurfaceError::Cancelled`], and what `take` returns.
+    fn facets(&self, cancelled: Cancelled<'_>, take: TakeFacets<'_>) -> Result<(), SolidError>;
+
+    /// The triangles by their vertices' numbers.
+    ///
+    /// # Errors
+    /// [`SurfaceError::Cancelled`], [`SolidError::TooMany`], and what `take` returns.
+    fn pieces(&self, cancelled: Cancelled<'_>, take: TakePiece<'_>) -> Result<(), SolidError>;
+}
+
+/// A surface held in memory.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Mesh {
+    /// Vertices, mm.
+    pub vertices: Vec<Point>,
+    /// Triangles, counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+impl Mesh {
+    /// Corners of a triangle.
+    #[must_use]
+    pub fn corners(&self, triangle: [u32; 3]) -> [Point; 3] {
+        triangle.map(|v| self.vertices[v as usize])
+    }
+
+    /// Enclosed volume, mm^3.
+    #[must_use]
+    pub fn volume(&self) -> f64 {
+        self.triangles.iter().map(|t| signed_volume(&self.corners(*t))).sum()
+    }
+}
+
+impl Solid for Mesh {
+    fn count(&self, _cancelled: Cancelled<'_>) -> Result<u64, SolidError> {
+        Ok(self.triangles.len() as u64)
+    }
+
+    fn facets(&self, _cancelled: Cancelled<'_>, take: TakeFacets<'_>) -> Result<(), SolidError> {
+        let facets: Vec<[Point; 3]> = self.triangles.iter().map(|t| self.corners(*t)).collect();
+        take(&facets)
+    }
+
+    fn pieces(&self, _cancelled: Cancelled<'_>, take: TakePiece<'_>) -> Result<(), SolidError> {
+        take(Piece { vertices: self.vertices.clone(), triangles: self.triangles.clone() })
+    }
+}
+
+/// One phase of a voxel grid, in the strip's own frame or its mirror image.
+#[derive(Debug, Clone, Copy)]
+pub struct PhaseSolid<'a> {
+    /// The surfaces.
+    pub surface: VoxelSurface<'a>,
+    /// The phase.
+    pub phase: u8,
+    /// Mirrored at the mid-line, as every second spoke of an alternating pattern is.
+    pub mirrored: bool,
+}
+
+impl PhaseSolid<'_> {
+    fn place(&self, [x, y, z]: Point) -> Point {
+        if self.mirrored { [x, -y, z] } else { [x, y, z] }
+    }
+
+    fn turn<T>(&self, [a, b, c]: [T; 3]) -> [T; 3] {
+        if self.mirrored { [a, c, b] } else { [a, b, c] }
+    }
+}
+
+impl Solid for PhaseSolid<'_> {
+    fn count(&self, cancelled: Cancelled<'_>) -> Result<u64, SolidError> {
+        Ok(self.surface.count(self.phase, cancelled)?)
+    }
+
+    fn facets(&self, cancelled: Cancelled<'_>, take: TakeFacets<'_>) -> Result<(), SolidError> {
+        self.surface.for_each_slab(
+            cancelled,
+            |slab| {
+                let mut facets = Vec::new();
+                slab.triangles(self.phase, &mut |triangle| {
+                    facets.push(self.turn(triangle.map(|v| self.place(self.surface.position(&v)))));
+                });
+                facets
+            },
+            |_, facets| take(&facets),
+        )
+    }
+
+    fn pieces(&self, cancelled: Cancelled<'_>, take: TakePiece<'_>) -> Result<(), SolidError> {
+        self.surface.indexed(self.phase, cancelled, &mut |vertices, mut triangles| {
+            if self.mirrored {
+                triangles.iter_mut().for_each(|t| *t = self.turn(*t));
+            }
+            let vertices = vertices.iter().map(|v| self.place(self.surface.position(v))).collect();
+            take(Piece { vertices, triangles })
+        })
+    }
+}
