@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use voxelastica_core::input::FabricationKind;
 
 /// Target shape in, finite-element decks of a flat, modulus-graded flower out.
 #[derive(Debug, Parser)]
@@ -32,6 +34,8 @@ pub enum Command {
     Design(DesignOptions),
     /// Let CalculiX morph a design and compare the result with the target.
     Verify(VerifyOptions),
+    /// Make the files to print, cut and assemble a design.
+    Fabricate(FabricateOptions),
     /// List the materials of the library.
     Materials,
     /// List the kinds of targets and the built-in examples, or print one of them.
@@ -78,6 +82,19 @@ pub struct VerifyOptions {
     pub keep: Option<PathBuf>,
 }
 
+/// Options of `fabricate`.
+#[derive(Debug, Args)]
+pub struct FabricateOptions {
+    /// Folder that `design` wrote.
+    pub folder: PathBuf,
+    /// Make this kind only; may be repeated [default: fabrication.write of the design, or all that it can have].
+    #[arg(long, value_name = "KIND", value_delimiter = ',', value_parser = fabrication_kinds())]
+    pub only: Vec<FabricationKind>,
+    /// Do it even if there are very many voxels or the disk seems too small.
+    #[arg(long)]
+    pub yes: bool,
+}
+
 /// Options of `targets`.
 #[derive(Debug, Args)]
 pub struct TargetsOptions {
@@ -99,6 +116,11 @@ pub enum ModelChoice {
 pub enum SolverChoice {
     /// CalculiX.
     Ccx,
+}
+
+fn fabrication_kinds() -> impl TypedValueParser<Value = FabricationKind> {
+    PossibleValuesParser::new(FabricationKind::ALL.map(FabricationKind::name))
+        .try_map(|name| FabricationKind::from_name(&name).ok_or_else(|| format!("{name} is not known")))
 }
 
 fn positive(text: &str) -> Result<f64, String> {

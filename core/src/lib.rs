@@ -37,7 +37,7 @@
 //! ```
 //!
 //! The pipeline reads from top to bottom in [`design`]: [`target`] -> [`elastica`] -> [`materials`] and [`micromechanics`] ->
-//! [`voxel`]. From there [`deck`] writes finite-element decks, [`report`] the page and [`output`] a whole folder; [`solver`] runs
+//! [`voxel`]. From there [`deck`] writes finite-element decks, [`fabrication`] files to print, cut and assemble, [`report`] the page and [`output`] a whole folder; [`solver`] runs
 //! CalculiX and [`results`] compares what it returns with the target. [`input`] is the design file.
 //!
 //! **Guaranteed**: the same design gives the same bytes on the same machine and build; sizes from outside are limited before

@@ -1,6 +1,6 @@
 //! How long work reports and is cancelled.
 
-/// Told how many bytes were written so far; returning `false` cancels the work.
+/// Told how much work is done: bytes written, and print voxels drawn; returning `false` cancels the rest.
 pub type Progress<'a> = &'a (dyn Fn(u64) -> bool + Sync);
 
 /// A [`Progress`] that never cancels and shows nothing.

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use voxelastica_core::input::TargetInput;
-use voxelastica_core::output::write::{WriteOptions, Written, estimated_bytes, write_design};
+use voxelastica_core::output::write::{OutputKind, WriteOptions, Written, write_outputs};
 use voxelastica_core::{Design, DesignInput, Error, Limits};
 
 use crate::args::DesignOptions;
-use crate::console::Console;
+use crate::console::{Console, WRITING};
 
 /// Reads, computes and writes a design.
 pub fn run(options: &DesignOptions, console: &Console) -> Result<u8, Error> {
@@ -15,12 +15,14 @@ pub fn run(options: &DesignOptions, console: &Console) -> Result<u8, Error> {
     let design = Design::compute(&input, Limits { allow_large: options.yes })
         .map_err(|error| error.in_file(&options.file.display().to_string()))?;
     let folder = options.output.clone().unwrap_or_else(|| PathBuf::from("out").join(&input.name));
-    let bar = console.bar(estimated_bytes(&design), "{msg} [{wide_bar}] {bytes}/{total_bytes} {eta}", "writing");
-    let progress = |bytes: u64| {
-        bar.set_position(bytes);
+    let bar = console.bar(1, WRITING, "writing");
+    let progress = |work: u64| {
+        bar.set_position(work);
         !console.is_cancelled()
     };
-    let written = write_design(&design, &folder, WriteOptions { allow_large: options.yes }, &progress);
+    let allowed = WriteOptions { allow_large: options.yes };
+    let total = |work: u64| bar.set_length(work);
+    let written = write_outputs(&design, &folder, &OutputKind::ALL, allowed, &total, &progress);
     bar.finish_and_clear();
     let written = written?;
     report(&design, &written, console);

@@ -8,8 +8,9 @@ use voxelastica_core::report::{VerificationPicture, verification_svg};
 use voxelastica_core::results::verification::Model;
 use voxelastica_core::results::{Verification, compare, verify};
 use voxelastica_core::solver::ccx::{Ccx, Status};
-use voxelastica_core::{Design, DesignInput, Error, InputError, Limits};
+use voxelastica_core::{Design, Error};
 
+use super::designed;
 use crate::args::{ModelChoice, SolverChoice, VerifyOptions};
 use crate::console::Console;
 
@@ -19,12 +20,7 @@ const MISSED: u8 = 6;
 /// Solves a deck of a design and says how far the result is from the target.
 pub fn run(options: &VerifyOptions, console: &Console) -> Result<u8, Error> {
     let SolverChoice::Ccx = options.solver;
-    let path = options.folder.join("design.json");
-    if !path.is_file() {
-        let error = InputError::new("", "", "there is no design.json").help("run voxelastica design first");
-        return Err(Error::Input(error.in_file(&options.folder.display().to_string())));
-    }
-    let design = Design::compute(&DesignInput::read(&path)?, Limits { allow_large: true })?;
+    let design = designed(&options.folder)?;
     let mut ccx = Ccx { executable: options.ccx.clone(), ..Ccx::default() };
     if let Some(threads) = options.threads {
         ccx.threads = usize::from(threads);

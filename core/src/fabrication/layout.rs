@@ -2,13 +2,11 @@
 
 use std::f64::consts::PI;
 
+use super::hub_is_level;
 use super::solid::Point;
 use super::voxel_surface::Scale;
 use crate::design::Design;
 use crate::mesh::Flower;
-
-/// A hub end steeper than this cannot be laid flat together with the hub, rad.
-const LEVEL: f64 = 0.1 * PI / 180.0;
 
 /// Gap between neighbouring spokes that are laid out as separate parts, mm.
 const GAP_MM: f64 = 1.0;
@@ -71,7 +69,7 @@ impl FlatFlower {
         }
         let (count, length) = (input.count(), input.strips.length_mm);
         let half_angle = PI / count as f64;
-        let level = design.profile().inclination.last().is_some_and(|t| t.abs() <= LEVEL);
+        let level = hub_is_level(design);
         let gap_at = |radius: f64| smallest_gap(design, radius, half_angle);
         let nominal = input.hub_radius();
         let gap = gap_at(nominal);

@@ -30,14 +30,6 @@ pub enum SolidError {
     /// The file system.
     #[error(transparent)]
     Io(#[from] io::Error),
-    /// A defect: a surface did not come out the same twice.
-    #[error("a surface of {announced} triangles had {written} when it was written")]
-    Miscounted {
-        /// Triangles announced.
-        announced: u64,
-        /// Triangles written.
-        written: u64,
-    },
 }
 
 impl From<zip::result::ZipError> for SolidError {

@@ -3,11 +3,12 @@
 //! A header of 80 bytes, the number of triangles, and for each its unit normal and three corners in single precision, all
 //! little-endian. The format has no unit; ours is the mm.
 
-use std::io::Write;
+use std::io::SeekFrom;
 
 use super::layout::Placement;
 use super::solid::{Point, Solid, SolidError};
 use crate::output::Provenance;
+use crate::output::folder::Destination;
 use crate::progress::Cancelled;
 
 /// Bytes before the first triangle, and bytes a triangle takes.
@@ -29,38 +30,19 @@ pub struct Body<'a> {
     pub placement: Placement,
 }
 
-/// Writes solids into one file.
+/// Writes solids into one file and returns the number of triangles.
 ///
 /// # Errors
 /// [`SolidError::TooMany`] for more triangles than 32 bits can count, and what reading the solids or writing the file
 /// returns.
 pub fn write(
-    out: &mut dyn Write,
+    out: &mut dyn Destination,
     provenance: &Provenance,
     bodies: &[Body<'_>],
     cancelled: Cancelled<'_>,
-) -> Result<(), SolidError> {
-    let mut announced = 0;
-    let mut counted: Option<(*const (), u64)> = None;
-    for body in bodies {
-        // The spokes of a flower are the same solid again and again.
-        let identity = std::ptr::from_ref(body.solid).cast::<()>();
-        let count = match counted {
-            Some((known, count)) if std::ptr::eq(known, identity) => count,
-            _ => body.solid.count(cancelled)?,
-        };
-        counted = Some((identity, count));
-        announced += count;
-    }
-    let limit = u64::from(u32::MAX);
-    let number = u32::try_from(announced).map_err(|_| SolidError::TooMany {
-        count: announced,
-        what: "triangles",
-        format: "STL",
-        limit,
-    })?;
+) -> Result<u64, SolidError> {
     out.write_all(&header(provenance))?;
-    out.write_all(&number.to_le_bytes())?;
+    out.write_all(&0_u32.to_le_bytes())?;
     let mut written = 0;
     let mut bytes = Vec::new();
     for body in bodies {
@@ -71,7 +53,13 @@ pub fn write(
             Ok(out.write_all(&bytes)?)
         })?;
     }
-    if written == announced { Ok(()) } else { Err(SolidError::Miscounted { announced, written }) }
+    let limit = u64::from(u32::MAX);
+    let (what, format) = ("triangles", "STL");
+    let count = u32::try_from(written).map_err(|_| SolidError::TooMany { count: written, what, format, limit })?;
+    out.seek(SeekFrom::Start(HEADER - 4))?;
+    out.write_all(&count.to_le_bytes())?;
+    out.seek(SeekFrom::End(0))?;
+    Ok(written)
 }
 
 /// Version, seed and the start of the design's hash; never `solid`, which would announce a text.
@@ -122,8 +110,9 @@ mod tests {
         let turned = Placement { cosine: 0.0, sine: 1.0, shift: [0.0, 20.0, 0.0] };
         let bodies =
             [Body { solid: &plain, placement: Placement::IDENTITY }, Body { solid: &mirrored, placement: turned }];
-        let mut bytes = Vec::new();
-        write(&mut bytes, &provenance(), &bodies, &progress::never).unwrap();
+        let mut file = Cursor::new(Vec::new());
+        write(&mut file, &provenance(), &bodies, &progress::never).unwrap();
+        let bytes = file.into_inner();
         let count = 2 * plain.count(&progress::never).unwrap();
         assert_eq!(bytes.len() as u64, size(count));
         assert!(bytes.starts_with(b"Voxelastica 1.2.3, seed 7, design aaaa"));
@@ -153,7 +142,7 @@ mod tests {
         let empty = Mesh::default();
         let body = Body { solid: &empty, placement: Placement::IDENTITY };
         write(&mut bytes, &provenance(), &[body], &progress::never).unwrap();
-        assert_eq!(bytes.len() as u64, size(0));
+        assert_eq!(file.into_inner().len() as u64, size(0));
     }
 
     #[test]
@@ -161,7 +150,7 @@ mod tests {
         let grid = VoxelGrid::new(0.5, 2, vec![2; 40]);
         let solid = PhaseSolid { surface: VoxelSurface::new(&grid, 100.0).unwrap(), phase: 0, mirrored: false };
         let body = Body { solid: &solid, placement: Placement::IDENTITY };
-        let error = write(&mut Vec::new(), &provenance(), &[body], &|| true).unwrap_err();
+        let error = write(&mut Cursor::new(Vec::new()), &provenance(), &[body], &|| true).unwrap_err();
         assert!(matches!(error, SolidError::Surface(crate::fabrication::voxel_surface::SurfaceError::Cancelled)));
     }
 }

@@ -9,6 +9,7 @@
 pub mod check;
 pub mod document;
 mod error;
+pub mod fabrication;
 pub mod files;
 pub mod model;
 pub mod parameters;
@@ -17,6 +18,7 @@ pub mod schema;
 pub mod target_file;
 
 pub use error::{InputError, InputProblem};
+pub use fabrication::{FabricationInput, FabricationKind, PrintSource, Printer, Scope, ThreeMfGeometry};
 pub use model::{
     DeckKind, DeckSolver, DeckStyle, DecksInput, DesignInput, MaterialsInput, StripsInput, TargetInput, ThrustInput,
     VoxelsInput,

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::InputError;
+use super::fabrication::FabricationInput;
 use crate::elastica::{HubSupport, ThrustChoice};
 use crate::materials::{Material, library};
 use crate::micromechanics::PhaseSet;
@@ -30,6 +31,9 @@ pub struct DesignInput {
     pub voxels: VoxelsInput,
     /// The decks.
     pub decks: DecksInput,
+    /// The files to make the thing; absent where the design file says nothing about them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fabrication: Option<FabricationInput>,
 }
 
 /// The target of a design.
@@ -260,6 +264,14 @@ impl DesignInput {
         self.strips.hub_radius_mm.unwrap_or(0.0)
     }
 
+    /// How the thing is made: the design file's table, or its defaults.
+    ///
+    /// # Errors
+    /// None in practice: the defaults of the table of parameters are values of its own types.
+    pub fn fabrication(&self) -> Result<FabricationInput, InputError> {
+        self.fabrication.clone().map_or_else(FabricationInput::defaults, Ok)
+    }
+
     /// The phases, from the custom materials and the library.
     ///
     /// # Errors
@@ -350,6 +362,9 @@ impl DesignInput {
             let problem = "C3D8R needs at least four elements through the thickness to bend";
             return Err(InputError::new("decks.graded_elements", format!("{:?}", self.decks.graded_elements), problem)
                 .help("use four or more, or solid_element = \"C3D8I\""));
+        }
+        if let Some(fabrication) = &self.fabrication {
+            fabrication.validate()?;
         }
         let size = self.voxels.size_mm;
         Lattice::new(self.strips.length_mm, self.strips.thickness_mm, size)

@@ -2,6 +2,8 @@
 //!
 //! Checks, JSON Schema, the reference in `docs/design-file.md` and the forms of host programs are all made from it.
 
+mod fabrication;
+
 use serde::Serialize;
 
 /// What a key accepts.
@@ -109,8 +111,27 @@ const fn between(least: f64, most: f64) -> Kind {
 const BASE: Parameter =
     Parameter { key: "", kind: Kind::Text, unit: None, default: None, required: false, targets: &[], description: "" };
 
+/// Number of keys.
+const COUNT: usize = DESIGN.len() + fabrication::FABRICATION.len();
+
 /// All keys, in the order in which a design file is read.
-pub const PARAMETERS: &[Parameter] = &[
+pub const PARAMETERS: &[Parameter] = &all();
+
+const fn all() -> [Parameter; COUNT] {
+    let mut all = [BASE; COUNT];
+    let mut i = 0;
+    while i < COUNT {
+        all[i] = if i < DESIGN.len() { DESIGN[i] } else { fabrication::FABRICATION[i - DESIGN.len()] };
+        i += 1;
+    }
+    all
+}
+
+/// Tables that a design has only where its file has them, so that their defaults change no other design.
+pub const OPTIONAL_TABLES: [&str; 1] = ["fabrication"];
+
+/// Keys of the design itself.
+const DESIGN: &[Parameter] = &[
     Parameter {
         key: "name",
         description: "Name of the design, used in file names; by default the file's stem.",

@@ -23,3 +23,15 @@ pub mod verification;
 pub use error::ReportError;
 pub use page::html;
 pub use verification::{VerificationPicture, verification_svg};
+
+/// The colour of one of `count` phases, softest first: red, green, blue, the same in pictures and in printed files.
+#[must_use]
+pub fn phase_colour(index: usize, count: usize) -> [u8; 3] {
+    palette::phase(index, count).0
+}
+
+/// The colour of a share from soft (0) to stiff (1).
+#[must_use]
+pub fn modulus_colour(share: f64) -> [u8; 3] {
+    palette::ramp(share).0
+}

@@ -10,11 +10,10 @@ mod model;
 mod package;
 pub mod volumetric;
 
-use std::io::Write;
-
 use super::layout::Placement;
 use super::solid::{Solid, SolidError};
 use crate::output::Provenance;
+use crate::output::folder::Destination;
 use crate::progress::Cancelled;
 use volumetric::PhaseImages;
 
@@ -79,7 +78,7 @@ impl Document<'_> {
     ///
     /// # Errors
     /// What reading the solids or writing the file returns.
-    pub fn write(&self, out: &mut dyn Write, cancelled: Cancelled<'_>) -> Result<(), SolidError> {
+    pub fn write(&self, out: &mut dyn Destination, cancelled: Cancelled<'_>) -> Result<(), SolidError> {
         let mut package = package::Package::new(out)?;
         let images = self.objects.iter().filter_map(|object| match &object.shape {
             Shape::Imaged { images, .. } => Some(images.files.as_slice()),

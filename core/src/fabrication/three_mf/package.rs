@@ -4,10 +4,11 @@ use std::io::Write;
 
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
-use zip::write::{SimpleFileOptions, StreamWriter};
+use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use crate::fabrication::solid::SolidError;
+use crate::output::folder::Destination;
 
 /// Part name of the model.
 const MODEL: &str = "3D/3dmodel.model";
@@ -28,13 +29,13 @@ const LEVEL: i64 = 2;
 
 /// A package that is being written.
 pub struct Package<'a> {
-    zip: ZipWriter<StreamWriter<&'a mut dyn Write>>,
+    zip: ZipWriter<&'a mut dyn Destination>,
 }
 
 impl<'a> Package<'a> {
     /// Starts a package: content types and the relationship to the model.
-    pub fn new(out: &'a mut dyn Write) -> Result<Self, SolidError> {
-        let mut package = Self { zip: ZipWriter::new_stream(out) };
+    pub fn new(out: &'a mut dyn Destination) -> Result<Self, SolidError> {
+        let mut package = Self { zip: ZipWriter::new(out) };
         let types = document(|xml| {
             xml.create_element("Types").with_attribute(("xmlns", CONTENT_TYPES)).write_inner_content(|xml| {
                 for (extension, kind) in TYPES {
@@ -72,7 +73,7 @@ impl<'a> Package<'a> {
 
     /// Ends the package.
     pub fn finish(self) -> Result<(), SolidError> {
-        self.zip.finish()?.into_inner().flush()?;
+        self.zip.finish()?;
         Ok(())
     }
 

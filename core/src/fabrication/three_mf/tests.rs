@@ -81,9 +81,9 @@ fn a_package_holds_each_phase_once_and_places_it() {
         items: vec![(2, Placement::IDENTITY), (2, quarter)],
     };
     let written = || {
-        let mut bytes = Vec::new();
-        document.write(&mut bytes, &progress::never).unwrap();
-        bytes
+        let mut file = Cursor::new(Vec::new());
+        document.write(&mut file, &progress::never).unwrap();
+        file.into_inner()
     };
     let bytes = written();
     assert_eq!(bytes, written());
@@ -133,9 +133,9 @@ fn images_show_the_phases_the_right_way_up() {
         objects: vec![Object { name: "strip".to_owned(), shape: Shape::Imaged { solid: &whole, images: &images } }],
         items: vec![(0, Placement::IDENTITY)],
     };
-    let mut bytes = Vec::new();
-    document.write(&mut bytes, &progress::never).unwrap();
-    let parts = parts(&bytes);
+    let mut file = Cursor::new(Vec::new());
+    document.write(&mut file, &progress::never).unwrap();
+    let parts = parts(file.get_ref());
     let found = elements(&parts["3D/3dmodel.model"]);
     let one = |name: &str| found.iter().find(|e| e.0 == name).unwrap().1.clone();
     assert_eq!(one("v:imagestack")["sheetcount"], "2");
