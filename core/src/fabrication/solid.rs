@@ -2,7 +2,8 @@
 
 use std::io;
 
-use super::voxel_surface::{SurfaceError, VoxelSurface, signed_volume};
+use super::stl::Frame;
+use super::voxel_surface::{SurfaceError, Vertex, VoxelSurface, signed_volume};
 use crate::progress::Cancelled;
 
 /// A point, mm.
@@ -55,17 +56,22 @@ pub type TakeFacets<'a> = &'a mut dyn FnMut(&[[Point; 3]]) -> Result<(), SolidEr
 
 /// A solid. Both ways of walking through it give the same triangles in the same order every time.
 pub trait Solid: Sync {
+    /// Edge of the lattice that vertices lie on, mm; zero where there is none.
+    fn lattice_mm(&self) -> f64 {
+        0.0
+    }
+
     /// Number of triangles.
     ///
     /// # Errors
     /// [`SurfaceError::Cancelled`].
     fn count(&self, cancelled: Cancelled<'_>) -> Result<u64, SolidError>;
 
-    /// The triangles.
+    /// The triangles, in a frame of single precision: `frame` may move what lies closest together.
     ///
     /// # Errors
     /// [`SurfaceError::Cancelled`], and what `take` returns.
-    fn facets(&self, cancelled: Cancelled<'_>, take: TakeFacets<'_>) -> Result<(), SolidError>;
+    fn facets(&self, frame: &Frame, cancelled: Cancelled<'_>, take: TakeFacets<'_>) -> Result<(), SolidError>;
 
     /// The triangles by their vertices' numbers.
     ///
@@ -102,8 +108,9 @@ impl Solid for Mesh {
         Ok(self.triangles.len() as u64)
     }
 
-    fn facets(&self, _cancelled: Cancelled<'_>, take: TakeFacets<'_>) -> Result<(), SolidError> {
-        let facets: Vec<[Point; 3]> = self.triangles.iter().map(|t| self.corners(*t)).collect();
+    fn facets(&self, frame: &Frame, _cancelled: Cancelled<'_>, take: TakeFacets<'_>) -> Result<(), SolidError> {
+        let place = |t: &[u32; 3]| self.corners(*t).map(|p| frame.placement.place(p));
+        let facets: Vec<[Point; 3]> = self.triangles.iter().map(place).collect();
         take(&facets)
     }
 
@@ -134,17 +141,27 @@ impl PhaseSolid<'_> {
 }
 
 impl Solid for PhaseSolid<'_> {
+    fn lattice_mm(&self) -> f64 {
+        self.surface.scale().edge_mm
+    }
+
     fn count(&self, cancelled: Cancelled<'_>) -> Result<u64, SolidError> {
         Ok(self.surface.count(self.phase, cancelled)?)
     }
 
-    fn facets(&self, cancelled: Cancelled<'_>, take: TakeFacets<'_>) -> Result<(), SolidError> {
+    fn facets(&self, frame: &Frame, cancelled: Cancelled<'_>, take: TakeFacets<'_>) -> Result<(), SolidError> {
         self.surface.for_each_slab(
             cancelled,
             |slab| {
                 let mut facets = Vec::new();
                 slab.triangles(self.phase, &mut |triangle| {
-                    facets.push(self.turn(triangle.map(|v| self.place(self.surface.position(&v)))));
+                    let place = |vertex: Vertex| {
+                        let (point, offset) = (self.surface.lattice_point(&vertex), self.surface.offset(&vertex));
+                        let contact =
+                            vertex.contact.map(|[along, across]| [along, if self.mirrored { -across } else { across }]);
+                        frame.place(self.place(point), self.place(offset), contact)
+                    };
+                    facets.push(self.turn(triangle.map(place)));
                 });
                 facets
             },

@@ -1,7 +1,8 @@
 //! Binary STL.
 //!
 //! A header of 80 bytes, the number of triangles, and for each its unit normal and three corners in single precision, all
-//! little-endian. The format has no unit; ours is the mm.
+//! little-endian. The format has no unit; ours is the mm. It has no vertices either, so readers weld corners that are equal,
+//! or that fall into the same cell of a grid; [`Frame`] sees to it that a grid of a micrometre does no harm.
 
 use std::io::SeekFrom;
 
@@ -30,6 +31,64 @@ pub struct Body<'a> {
     pub placement: Placement,
 }
 
+/// Edge of the cells in which a common reader (lib3mf) takes all corners for one, mm.
+const CELL_MM: f64 = 1e-3;
+
+/// Least distance of a moved corner from the boundaries of cells that matter, mm: more than single precision loses.
+const MARGIN_MM: f64 = 1e-4;
+
+/// A placement, and how lattice points are moved within their cell of the reader's grid, by less than a micrometre.
+///
+/// Around a lattice point where voxels of a phase touch, surfaces lie less than a cell apart. Their vertices are found along
+/// the lattice's axes, turned by the placement, `d` away from the point. With the point in the middle of a cell they leave
+/// the cell where `d cos` or `d sin` exceeds half a cell. Where the turn is neither, the point is moved to the corner of a
+/// cell instead, and the four directions lead into four cells.
+#[derive(Debug, Clone, Copy)]
+pub struct Frame {
+    /// The placement.
+    pub placement: Placement,
+    /// Place of lattice points in the cell, in x, y and z, as a share of its edge.
+    within: Point,
+    /// Whether the lattice's planes are planes of the grid, so that everything moves together.
+    together: bool,
+}
+
+impl Frame {
+    /// The frame of lattices with voxels of a given edge.
+    #[must_use]
+    pub fn new(placement: Placement, edge_mm: f64) -> Self {
+        let (along, across) = (placement.cosine.abs(), placement.sine.abs());
+        // The slenderest contact reaches half a cell and a little.
+        let cornered = along.min(across) * 0.5 * CELL_MM >= MARGIN_MM;
+        let in_plane = if cornered { 0.0 } else { 0.5 };
+        let cells = edge_mm / CELL_MM;
+        let whole = |x: f64| (x - x.round()).abs() < 1e-6;
+        let together = along.min(across) < 1e-12
+            && whole(cells)
+            && placement.shift.iter().all(|s| whole(s / CELL_MM) || whole(s / CELL_MM + 0.5));
+        Self { placement, within: [in_plane, in_plane, 0.5], together }
+    }
+
+    /// The place of a vertex: its lattice point, its offset from it, and where there is a contact, on which side is void.
+    #[must_use]
+    pub fn place(&self, point: Point, offset: Point, contact: Option<[i8; 2]>) -> Point {
+        let mut point = self.placement.place(point);
+        if contact.is_some() || self.together {
+            for (coordinate, within) in point.iter_mut().zip(self.within) {
+                // The cell of a point between two cells must not depend on its last digit.
+                *coordinate = CELL_MM * ((*coordinate / CELL_MM - within + 0.5 + 1e-3).floor() + within);
+            }
+        }
+        let mut offset = offset;
+        if let Some([along, across]) = contact.filter(|_| offset == [0.0; 3] && self.within[0] == 0.0) {
+            // In the corner of four cells a point joins what is on the side of void, not what is across the solid.
+            offset = [f64::from(along) * MARGIN_MM, f64::from(across) * MARGIN_MM, 0.0];
+        }
+        let offset = Placement { shift: [0.0; 3], ..self.placement }.place(offset);
+        std::array::from_fn(|k| point[k] + offset[k])
+    }
+}
+
 /// Writes solids into one file and returns the number of triangles.
 ///
 /// # Errors
@@ -46,9 +105,10 @@ pub fn write(
     let mut written = 0;
     let mut bytes = Vec::new();
     for body in bodies {
-        body.solid.facets(cancelled, &mut |facets| {
+        let frame = Frame::new(body.placement, body.solid.lattice_mm());
+        body.solid.facets(&frame, cancelled, &mut |facets| {
             bytes.clear();
-            facets.iter().for_each(|facet| put(&mut bytes, &facet.map(|p| body.placement.place(p))));
+            facets.iter().for_each(|facet| put(&mut bytes, facet));
             written += facets.len() as u64;
             Ok(out.write_all(&bytes)?)
         })?;
@@ -138,10 +198,10 @@ mod tests {
 
     #[test]
     fn an_empty_phase_is_an_empty_file() {
-        let mut bytes = Vec::new();
+        let mut file = Cursor::new(Vec::new());
         let empty = Mesh::default();
         let body = Body { solid: &empty, placement: Placement::IDENTITY };
-        write(&mut bytes, &provenance(), &[body], &progress::never).unwrap();
+        write(&mut file, &provenance(), &[body], &progress::never).unwrap();
         assert_eq!(file.into_inner().len() as u64, size(0));
     }
 

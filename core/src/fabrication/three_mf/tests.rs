@@ -33,7 +33,7 @@ fn parts(bytes: &[u8]) -> HashMap<String, Vec<u8>> {
             assert_eq!(file.last_modified(), Some(zip::DateTime::DEFAULT));
             let mut contents = Vec::new();
             file.read_to_end(&mut contents).unwrap();
-            (file.name().to_owned(), contents)
+            (file.name().unwrap().into_owned(), contents)
         })
         .collect()
 }
@@ -48,10 +48,10 @@ fn elements(xml: &[u8]) -> Vec<(String, HashMap<String, String>)> {
             Event::Start(e) | Event::Empty(e) => {
                 let attributes = e.attributes().map(|a| {
                     let a = a.unwrap();
-                    let value = a.decode_and_unescape_value(reader.decoder()).unwrap().into_owned();
-                    (String::from_utf8(a.key.as_ref().to_vec()).unwrap(), value)
+                    let value = a.normalized_value(quick_xml::XmlVersion::Implicit1_0).unwrap().into_owned();
+                    (a.key.as_ref().to_owned(), value)
                 });
-                found.push((String::from_utf8(e.name().as_ref().to_vec()).unwrap(), attributes.collect()));
+                found.push((e.name().as_ref().to_owned(), attributes.collect()));
             }
             _ => {}
         }

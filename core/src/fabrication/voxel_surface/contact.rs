@@ -23,7 +23,7 @@ pub const PHASES: usize = 3;
 
 /// Half-diagonal `d` of the prism or octahedron that a phase gets, in the unit of [`super::Scale`]. All even, the second
 /// less than half the first.
-pub const SIZES: [i8; PHASES] = [10, 4, 2];
+pub const SIZES: [i8; PHASES] = [42, 20, 2];
 
 /// A direction from a vertex along a lattice edge: `2 axis + 1` upwards, `2 axis` downwards.
 pub type Ray = usize;
@@ -105,6 +105,14 @@ impl Contact {
         }
         let vertex = Octants::softest(octants.0.into_iter())?;
         Some(Self { labels: octants.0, rays, vertex })
+    }
+
+    /// On which side along `x` and along `y` there is more void: -1, 0 or 1.
+    #[must_use]
+    pub fn void_side(&self) -> [i8; 2] {
+        let void = |o: &usize| self.labels[*o] == VOID;
+        let balance = |axis: usize| (0..8).filter(void).map(|o| if o >> axis & 1 == 1 { 1_i8 } else { -1 }).sum::<i8>();
+        [balance(0).signum(), balance(1).signum()]
     }
 }
 

@@ -20,6 +20,9 @@ pub struct Vertex {
     pub at: [i32; 3],
     /// The offset.
     pub offset: Offset,
+    /// Where voxels of a phase touch along an edge or at a corner at this lattice point: on which side, along the strip and
+    /// across it, there is more void (0 where on neither).
+    pub contact: Option<[i8; 2]>,
 }
 
 impl Vertex {
@@ -94,7 +97,8 @@ impl Slab {
 
     fn vertex(&self, at: [usize; 3], offset: Offset) -> Vertex {
         let across = at[1] as i32 - (self.size[1] / 2) as i32;
-        Vertex { at: [(self.slices[0] + at[0]) as i32, across, at[2] as i32], offset }
+        let contact = self.template(at).map(|template| template.contact.void_side());
+        Vertex { at: [(self.slices[0] + at[0]) as i32, across, at[2] as i32], offset, contact }
     }
 
     /// Whether a lattice point lies in a plane shared with another slab.

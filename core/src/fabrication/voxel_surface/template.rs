@@ -357,7 +357,7 @@ mod tests {
             assert!(template.phases[phase].patches.is_empty());
         }
         // Faces of the checkerboard start beside the prism.
-        assert_eq!(template.phases[1].faces[0][3], [[0, 10, 0]]);
+        assert_eq!(template.phases[1].faces[0][3], [[0, 42, 0]]);
     }
 
     #[test]

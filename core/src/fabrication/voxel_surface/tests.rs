@@ -4,6 +4,8 @@ use proptest::prelude::*;
 
 use super::contact::{Octants, VOID};
 use super::*;
+use crate::fabrication::layout::Placement;
+use crate::fabrication::stl::Frame;
 
 type Point = [f64; 3];
 
@@ -43,6 +45,25 @@ fn assert_manifold<K: std::hash::Hash + Eq + Copy + std::fmt::Debug>(triangles: 
     }
 }
 
+/// A reader that welds corners in cells of a micrometre and drops triangles that collapse: every edge still has two.
+fn assert_survives_welding(surface: &VoxelSurface<'_>, mesh: &[[Vertex; 3]], angle: f64, what: &str) {
+    let placement = Placement { cosine: angle.cos(), sine: angle.sin(), shift: [30.25 * angle, 7.0 * angle, 0.0] };
+    let frame = Frame::new(placement, surface.scale().edge_mm);
+    let cell = |v: Vertex| {
+        let place = frame.place(surface.lattice_point(&v), surface.offset(&v), v.contact);
+        place.map(|c| (c as f32 / 0.001_f32).floor() as i32)
+    };
+    let mut edges: HashMap<([i32; 3], [i32; 3]), i32> = HashMap::new();
+    for t in mesh.iter().map(|t| t.map(cell)) {
+        if t[0] != t[1] && t[1] != t[2] && t[2] != t[0] {
+            (0..3).for_each(|k| *edges.entry((t[k], t[(k + 1) % 3])).or_insert(0) += 1);
+        }
+    }
+    for ((a, b), count) in &edges {
+        assert_eq!((*count, edges.get(&(*b, *a))), (1, Some(&1)), "{what} at {angle}: edge {a:?} {b:?} welded");
+    }
+}
+
 fn single(p: Point) -> [u32; 3] {
     p.map(|c| (c as f32 + 0.0).to_bits())
 }
@@ -61,12 +82,17 @@ fn assert_good(grid: &VoxelGrid, phases: u8, what: &str) {
                 mesh.iter().map(|t| t.map(|v| single(place(surface.position(&v))))).collect();
             assert_manifold(&merged, &format!("{what}, in single precision"));
         }
+        // Of three phases, some contacts are too slender for a turned grid.
+        let turned = [0.1, 0.5236, 0.7854, 2.2].into_iter().filter(|_| !grid.phases().contains(&2));
+        for angle in [0.0, std::f64::consts::FRAC_PI_2].into_iter().chain(turned) {
+            assert_survives_welding(&surface, &mesh, angle, &what);
+        }
         let measure = surface.measure(phase);
         assert_eq!(measure.triangles, surface.count(phase, &crate::progress::never).unwrap());
         let cube = grid.size_mm().powi(3);
         let count = grid.phases().iter().filter(|p| **p == phase).count() as f64;
         let share = measure.volume_mm3 - count * cube;
-        assert!(share.abs() <= 1e-3 * cube * (1.0 + grid.phases().len() as f64), "{what}: {share}");
+        assert!(share.abs() <= 1e-4 * cube * (1.0 + grid.phases().len() as f64), "{what}: {share}");
         if phase == 0 {
             assert!(share >= -1e-12 * cube, "{what}: the softest phase lost {share}");
         }
