@@ -24,15 +24,15 @@ pub fn run(options: &FabricateOptions, console: &Console) -> Result<u8, Error> {
     let made = made.map_err(|error| error.in_file(&file))?;
     for (kind, made) in &made.made {
         for (name, what) in &made.listed {
-            console.say(format!("{:<10}{name}: {what}", kind.name()));
+            console.say(format!("{:<12}{name}: {what}", kind.name()));
         }
     }
     if !made.kept.is_empty() {
-        console.detail(format!("kept      {}", made.kept.join(", ")));
+        console.detail(format!("kept        {}", made.kept.join(", ")));
     }
-    console.say(format!("written   {}", options.folder.join(FOLDER).display()));
+    console.say(format!("written     {}", options.folder.join(FOLDER).display()));
     for file in &made.files {
-        console.detail(format!("          {file}"));
+        console.detail(format!("            {file}"));
     }
     Ok(0)
 }

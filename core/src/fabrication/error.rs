@@ -1,5 +1,6 @@
 //! What keeps a design from being made.
 
+use super::voxel_surface::SurfaceError;
 use crate::error::Error;
 use crate::input::{FabricationKind, InputError};
 
@@ -49,6 +50,26 @@ pub enum FabricationError {
         /// Limit.
         limit: u32,
     },
+    /// An outline that was moved outward by half a kerf crosses itself.
+    #[error(
+        "with a kerf of {kerf_mm} mm an outline crosses itself at x = {x:.2} mm, y = {y:.2} mm; use a narrower kerf"
+    )]
+    OutlineCrosses {
+        /// Width of the cut, mm.
+        kerf_mm: f64,
+        /// Where, mm.
+        x: f64,
+        /// Where, mm.
+        y: f64,
+    },
+    /// The phases' surfaces cannot be held in a file.
+    #[error("{kind}: {error}")]
+    Surface {
+        /// The kind.
+        kind: FabricationKind,
+        /// Why.
+        error: SurfaceError,
+    },
 }
 
 impl FabricationError {
@@ -57,6 +78,8 @@ impl FabricationError {
     pub fn key(&self) -> &'static str {
         match self {
             Self::NotApplicable { .. } | Self::Unknown { .. } => "fabrication.write",
+            Self::Surface { .. } => "fabrication.scope",
+            Self::OutlineCrosses { .. } => "fabrication.kerf_mm",
             Self::TooManyVoxels { .. } | Self::ImageTooLarge { .. } => "fabrication.printer",
         }
     }

@@ -96,6 +96,21 @@ impl Mesh {
         triangle.map(|v| self.vertices[v as usize])
     }
 
+    /// A prism with a convex base, given counter-clockwise seen from above, between two heights.
+    #[must_use]
+    pub fn prism(base: &[[f64; 2]], [low, high]: [f64; 2]) -> Self {
+        let n = base.len() as u32;
+        let vertices = [low, high].into_iter().flat_map(|z| base.iter().map(move |[x, y]| [*x, *y, z])).collect();
+        let mut triangles = Vec::new();
+        for k in 1..n.saturating_sub(1) {
+            triangles.extend([[0, k + 1, k], [n, n + k, n + k + 1]]);
+        }
+        for (k, next) in (0..n).map(|k| (k, (k + 1) % n)) {
+            triangles.extend([[k, next, n + next], [k, n + next, n + k]]);
+        }
+        Self { vertices, triangles }
+    }
+
     /// Enclosed volume, mm^3.
     #[must_use]
     pub fn volume(&self) -> f64 {

@@ -22,6 +22,7 @@ pub mod verification;
 
 pub use error::ReportError;
 pub use page::html;
+pub(crate) use text::escape;
 pub use verification::{VerificationPicture, verification_svg};
 
 /// The colour of one of `count` phases, softest first: red, green, blue, the same in pictures and in printed files.
@@ -29,6 +30,9 @@ pub use verification::{VerificationPicture, verification_svg};
 pub fn phase_colour(index: usize, count: usize) -> [u8; 3] {
     palette::phase(index, count).0
 }
+
+/// The colour of the hub.
+pub const HUB_COLOUR: [u8; 3] = palette::HUB.0;
 
 /// The colour of a share from soft (0) to stiff (1).
 #[must_use]

@@ -240,22 +240,21 @@ impl Painter for DitherPainter<'_> {
                 return;
             };
             let quota = &mut quotas[index];
-            // A number below the pixels left; high bits, by multiplication.
-            let random = mix(row_seed.wrapping_add(column as u64)) >> 32;
-            let drawn = ((random * u64::from(quota.pixels)) >> 32) as u32;
+            // A number below the pixels left. What it decides is as good as a coin, so there are no branches to foretell.
+            let drawn = ((u64::from(scatter(row_seed, column)) * u64::from(quota.pixels)) >> 32) as u32;
             let [middle, last] = quota.phases;
-            pixels[column] = if drawn < middle {
-                quota.phases[0] -= 1;
-                2
-            } else if drawn < middle + last {
-                quota.phases[1] -= 1;
-                3
-            } else {
-                1
-            };
-            quota.pixels -= 1;
+            let hard = u32::from(drawn < middle + last);
+            let is_middle = u32::from(drawn < middle);
+            pixels[column] = (1 + 2 * hard - is_middle) as Pixel;
+            *quota = Quota { pixels: quota.pixels - 1, phases: [middle - is_middle, last + is_middle - hard] };
         });
     }
+}
+
+/// A random number for a column of a row.
+fn scatter(row_seed: u64, column: usize) -> u32 {
+    let z = row_seed.wrapping_add(column as u64).wrapping_mul(0xD6E8_FEB8_6659_FD93);
+    ((z ^ (z >> 32)).wrapping_mul(0xD6E8_FEB8_6659_FD93) >> 32) as u32
 }
 
 /// Scrambles a number (the finaliser of Steele, Lea and Flood's SplitMix64, 2014).

@@ -143,6 +143,12 @@ impl Raster {
         }
     }
 
+    /// A raster of the same pitch with fewer columns and rows, for a part of a picture.
+    #[must_use]
+    pub fn cut_to(self, columns: usize, rows: usize) -> Self {
+        Self { columns, rows, ..self }
+    }
+
     /// Voxels, void included.
     #[must_use]
     pub fn voxels(&self) -> f64 {

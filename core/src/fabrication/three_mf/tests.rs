@@ -106,7 +106,7 @@ fn a_package_holds_each_phase_once_and_places_it() {
 #[test]
 fn images_show_the_phases_the_right_way_up() {
     let grid = grid();
-    let images = volumetric::PhaseImages::of(&grid, "phases").unwrap();
+    let images = volumetric::PhaseImages::of(&grid, "phases", false).unwrap();
     assert_eq!((images.files.len(), images.pixels), (2, [4, 4]));
     for (layer, (_, png)) in images.files.iter().enumerate() {
         let mut reader = png::Decoder::new(Cursor::new(png)).read_info().unwrap();

@@ -45,6 +45,9 @@ const SLAB_VOXELS: usize = 8192;
 /// Slabs that are worked on at once; fixed, so that nothing depends on the machine.
 const BATCH: usize = 16;
 
+/// Slabs that an estimate looks at.
+const SAMPLES: usize = 6;
+
 /// What keeps a grid's surfaces from being made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -100,6 +103,21 @@ impl Scale {
         }
         Ok(Self { edge_mm, unit_mm })
     }
+
+    /// Largest distance by which a voxel gives way, mm: that of the softest phase's prism.
+    #[must_use]
+    pub fn parted_mm(&self) -> f64 {
+        f64::from(SIZES[0]) * self.unit_mm / 2.0_f64.sqrt()
+    }
+}
+
+/// Triangles and volume of a phase's surface.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Tally {
+    /// Triangles.
+    pub triangles: u64,
+    /// Enclosed volume, mm^3.
+    pub volume_mm3: f64,
 }
 
 /// What a phase's surface amounts to.
@@ -218,6 +236,37 @@ impl<'a> VoxelSurface<'a> {
             },
         )?;
         Ok(total)
+    }
+
+    /// Triangles and volume of a phase's surface.
+    ///
+    /// # Errors
+    /// [`SurfaceError::Cancelled`].
+    pub fn tally(&self, phase: u8, cancelled: Cancelled<'_>) -> Result<Tally, SurfaceError> {
+        let mut total = Tally::default();
+        let work = |slab: &Slab| {
+            let mut tally = Tally::default();
+            slab.triangles(phase, &mut |triangle| {
+                tally.triangles += 1;
+                tally.volume_mm3 += signed_volume(&triangle.map(|v| self.position(&v)));
+            });
+            tally
+        };
+        self.for_each_slab(cancelled, work, |_, tally| {
+            total.triangles += tally.triangles;
+            total.volume_mm3 += tally.volume_mm3;
+            Ok::<(), SurfaceError>(())
+        })?;
+        Ok(total)
+    }
+
+    /// Number of triangles of a phase's surface, from a few slabs spread over the strip.
+    #[must_use]
+    pub fn estimated_triangles(&self, phase: u8) -> u64 {
+        let slabs = self.slabs();
+        let sampled: Vec<usize> = (0..SAMPLES.min(slabs)).map(|k| k * slabs / SAMPLES.min(slabs)).collect();
+        let found: u64 = sampled.par_iter().map(|index| self.slab(*index).count(phase)).sum();
+        found.saturating_mul(slabs as u64) / (sampled.len() as u64).max(1)
     }
 
     /// Vertices, triangles and volume of a phase's surface. Holds all vertices in memory: for tests and small grids.
