@@ -14,7 +14,7 @@ mod graded_solid;
 mod keywords;
 mod layout;
 mod nastran;
-mod number;
+pub(crate) mod number;
 mod schedule;
 mod shell;
 mod sink;

@@ -1,5 +1,6 @@
 //! What keeps a design from being made.
 
+use super::voxel_surface::SurfaceError;
 use crate::error::Error;
 use crate::input::{FabricationKind, InputError};
 
@@ -61,6 +62,14 @@ pub enum FabricationError {
         /// Where, mm.
         y: f64,
     },
+    /// The phases' surfaces cannot be held in a file.
+    #[error("{kind}: {error}")]
+    Surface {
+        /// The kind.
+        kind: FabricationKind,
+        /// Why.
+        error: SurfaceError,
+    },
 }
 
 impl FabricationError {
@@ -69,6 +78,7 @@ impl FabricationError {
     pub fn key(&self) -> &'static str {
         match self {
             Self::NotApplicable { .. } | Self::Unknown { .. } => "fabrication.write",
+            Self::Surface { .. } => "fabrication.scope",
             Self::OutlineCrosses { .. } => "fabrication.kerf_mm",
             Self::TooManyVoxels { .. } | Self::ImageTooLarge { .. } => "fabrication.printer",
         }

@@ -6,12 +6,19 @@
 
 mod error;
 mod gcvf;
+pub mod layout;
 pub mod pattern;
 mod preview;
 mod print_stack;
 pub mod raster;
 pub mod record;
 mod run;
+pub mod solid;
+mod solids;
+pub mod stl;
+pub mod three_mf;
+pub mod triangulate;
+pub mod voxel_surface;
 
 use serde_json::Value;
 
@@ -101,8 +108,15 @@ pub trait Maker: Sync {
 }
 
 /// The makers, in the order in which they write.
-const MAKERS: &[&dyn Maker] =
-    &[&print_stack::PrintStack, &print_stack::Gcvf, &pattern::DxfPattern, &pattern::SvgPattern, &preview::Preview];
+const MAKERS: &[&dyn Maker] = &[
+    &solids::Stl,
+    &solids::ThreeMf,
+    &print_stack::PrintStack,
+    &print_stack::Gcvf,
+    &pattern::DxfPattern,
+    &pattern::SvgPattern,
+    &preview::Preview,
+];
 
 fn maker(kind: FabricationKind) -> Result<&'static dyn Maker, FabricationError> {
     MAKERS.iter().copied().find(|maker| maker.kind() == kind).ok_or(FabricationError::Unknown { kind })
