@@ -60,7 +60,7 @@ fn deck(strip: &Strip, procedure: &str, hub: bool) -> String {
         // Density one: the specific heat is then the capacity per volume. W, J and mm.
         writeln!(
             deck,
-            "*MATERIAL, NAME=M{phase}\n*CONDUCTIVITY\n{:e}\n*SPECIFIC HEAT\n{:e}\n*DENSITY\n1.\n\
+            "*MATERIAL, NAME=M{phase}\n*CONDUCTIVITY\n{:.9e}\n*SPECIFIC HEAT\n{:.9e}\n*DENSITY\n1.\n\
              *SOLID SECTION, ELSET=PHASE{phase}, MATERIAL=M{phase}",
             k[phase], c[phase]
         )

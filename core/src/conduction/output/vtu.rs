@@ -81,9 +81,11 @@ fn array(
     data.extend(bytes);
     let size = (data.len() - 8) as u64;
     data[..8].copy_from_slice(&size.to_le_bytes());
+    // Readers make scalars of arrays that do not say how many components they have.
+    let many = if components > 1 { format!(" NumberOfComponents=\"{components}\"") } else { String::new() };
     writeln!(
         out,
-        "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"binary\">\n{}\n</DataArray>",
+        "<DataArray type=\"{kind}\" Name=\"{name}\"{many} format=\"binary\">\n{}\n</DataArray>",
         STANDARD.encode(&data)
     )
 }
