@@ -8,13 +8,16 @@ use std::path::Path;
 use voxelastica_core::input::files::Format;
 use voxelastica_core::materials::{Material, library};
 use voxelastica_core::micromechanics::PhaseSet;
-use voxelastica_core::micromechanics::calibration::{BendingCellSize, CalibrationError, MixtureRule, calibrate, measure};
+use voxelastica_core::micromechanics::calibration::{
+    BendingCellSize, CalibrationError, MixtureRule, calibrate, measure,
+};
 use voxelastica_core::progress::never;
 use voxelastica_core::voxel::Pattern;
 use voxelastica_core::{DesignInput, Error};
 
 fn phases(contrast: f64, poisson: f64) -> PhaseSet {
-    let phase = |name: &str, modulus_mpa| Material { name: name.to_owned(), modulus_mpa, poisson, ..library()[0].clone() };
+    let phase =
+        |name: &str, modulus_mpa| Material { name: name.to_owned(), modulus_mpa, poisson, ..library()[0].clone() };
     PhaseSet::new(vec![phase("soft", 1.0), phase("rigid", contrast)], 0.2).unwrap()
 }
 
@@ -127,9 +130,9 @@ fn a_calibrated_design_takes_more_of_the_rigid_phase_and_meets_its_stiffness() {
 fn three_phases_are_refused_by_name() {
     let text = DESIGN.replace("[\"FLX9070\", \"FLX9095\"]", "[\"TangoBlack\", \"FLX9070\", \"FLX9095\"]");
     let input = DesignInput::from_text(&text, Format::Toml, "test.toml", "test", Path::new("."));
-    let error = input.map_err(Error::Input).and_then(|input| {
-        voxelastica_core::Design::compute(&input, voxelastica_core::Limits::default()).map(|_| ())
-    });
+    let error = input
+        .map_err(Error::Input)
+        .and_then(|input| voxelastica_core::Design::compute(&input, voxelastica_core::Limits::default()).map(|_| ()));
     let error = error.unwrap_err();
     assert_eq!(error.exit_code(), 2);
     assert!(error.to_string().contains("voxels.match") && error.to_string().contains("two phases"), "{error}");
@@ -146,7 +149,9 @@ fn tables_for_the_documentation() {
                 let rule = rule(contrast, pattern, size(12, 6, layers), &[1, 2, 3, 4, 5, 6]);
                 println!(
                     "{contrast:.2} {pattern:?} {layers} layers: {:.3?} scatter {:.2} % interpolation {:.2} %",
-                    middle(&rule), rule.scatter_percent, rule.interpolation_error_percent
+                    middle(&rule),
+                    rule.scatter_percent,
+                    rule.interpolation_error_percent
                 );
             }
         }
@@ -167,7 +172,12 @@ fn tables_for_the_documentation() {
         let seeds: Vec<u64> = seeds.collect();
         for contrast in [4.0, 30.0] {
             let rule = rule(contrast, Pattern::Random, size, &seeds);
-            println!("{contrast} {what}: {:.3?} scatter {:.2} % {:.1?}", middle(&rule), rule.scatter_percent, start.elapsed());
+            println!(
+                "{contrast} {what}: {:.3?} scatter {:.2} % {:.1?}",
+                middle(&rule),
+                rule.scatter_percent,
+                start.elapsed()
+            );
         }
     }
 }
@@ -207,7 +217,8 @@ fn calibrated_designs_miss_their_target_less() {
                         (x - profile.x[i]).hypot(z - profile.z[i]) / 40.0
                     };
                     let largest = found.midline.iter().map(miss).fold(0.0, f64::max);
-                    let rms = (found.midline.iter().map(|p| miss(p).powi(2)).sum::<f64>() / found.midline.len() as f64).sqrt();
+                    let rms = (found.midline.iter().map(|p| miss(p).powi(2)).sum::<f64>() / found.midline.len() as f64)
+                        .sqrt();
                     let thrust = voxelastica_core::output::Summary::of(&design).thrust.per_spoke;
                     let force = found.reactions.rim.horizontal;
                     [100.0 * largest, 100.0 * rms, force, thrust.beam.horizontal_n, thrust.plane_strain.horizontal_n]

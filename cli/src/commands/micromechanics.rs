@@ -4,7 +4,9 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use voxelastica_core::materials::{Material, library};
-use voxelastica_core::micromechanics::unit_cell::{BrickKind, Catalogue, CellMesh, CellSize, Layout, LoadedFaces, Row, classes};
+use voxelastica_core::micromechanics::unit_cell::{
+    BrickKind, Catalogue, CellMesh, CellSize, Layout, LoadedFaces, Row, classes,
+};
 use voxelastica_core::output::unit_cells::write_unit_cells;
 use voxelastica_core::{DesignInput, Error, InputError};
 
@@ -90,7 +92,8 @@ fn report(cells: &Catalogue, seconds: f64, console: &Console) {
         .sum::<f64>()
         / layouts;
     let through = departures.iter().flat_map(|d| d.across).fold(0.0, farthest);
-    let through = if through.abs() < 1e-8 { "exactly".to_owned() } else { format!("{:+.2} % at worst", 100.0 * through) };
+    let through =
+        if through.abs() < 1e-8 { "exactly".to_owned() } else { format!("{:+.2} % at worst", 100.0 * through) };
     console.say(format!(
         "Voigt     along x and y {:+.2} % on average and {:+.2} % at worst; along z {through}",
         100.0 * mean,

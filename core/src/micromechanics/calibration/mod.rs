@@ -159,8 +159,7 @@ pub fn measure(
         // Pieces of a strip follow each other: their compliances add up.
         let mean = count / results.iter().map(|r| 1.0 / r.bending_mpa).sum::<f64>();
         if results.len() > 1 {
-            let variance =
-                results.iter().map(|r| (r.bending_mpa / mean - 1.0).powi(2)).sum::<f64>() / (count - 1.0);
+            let variance = results.iter().map(|r| (r.bending_mpa / mean - 1.0).powi(2)).sum::<f64>() / (count - 1.0);
             scatter = scatter.max((variance / count).sqrt());
         }
         points.push([fraction, mean, voigt(&[1.0 - fraction, fraction], &[soft, rigid])]);
