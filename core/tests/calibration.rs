@@ -8,13 +8,16 @@ use std::path::Path;
 use voxelastica_core::input::files::Format;
 use voxelastica_core::materials::{Material, library};
 use voxelastica_core::micromechanics::PhaseSet;
-use voxelastica_core::micromechanics::calibration::{BendingCellSize, CalibrationError, MixtureRule, calibrate, measure};
+use voxelastica_core::micromechanics::calibration::{
+    BendingCellSize, CalibrationError, MixtureRule, calibrate, measure,
+};
 use voxelastica_core::progress::never;
 use voxelastica_core::voxel::Pattern;
 use voxelastica_core::{DesignInput, Error};
 
 fn phases(contrast: f64, poisson: f64) -> PhaseSet {
-    let phase = |name: &str, modulus_mpa| Material { name: name.to_owned(), modulus_mpa, poisson, ..library()[0].clone() };
+    let phase =
+        |name: &str, modulus_mpa| Material { name: name.to_owned(), modulus_mpa, poisson, ..library()[0].clone() };
     PhaseSet::new(vec![phase("soft", 1.0), phase("rigid", contrast)], 0.2).unwrap()
 }
 
@@ -49,10 +52,11 @@ fn a_bilayer_has_its_textbook_stiffness() {
 /// Columns that run along the strip with all layers alike share its curvature: Voigt.
 #[test]
 fn columns_along_the_strip_bend_as_voigt_says() {
-    // Sixteen voxels across: every fraction of the table is a whole number of column pairs in every second case.
-    let rule = rule(10.0, Pattern::Centred, size(4, 16, 2), &[1]);
-    for (found, voigt) in rule.bending_mpa.iter().zip(&rule.voigt_mpa) {
-        assert!((found / voigt - 1.0).abs() < 1e-9, "{found} {voigt}");
+    for pattern in [Pattern::Centred, Pattern::Split, Pattern::OneEdge] {
+        let rule = rule(10.0, pattern, size(4, 4, 2), &[1]);
+        for (found, voigt) in rule.bending_mpa.iter().zip(&rule.voigt_mpa) {
+            assert!((found / voigt - 1.0).abs() < 1e-9, "{pattern:?}: {found} {voigt}");
+        }
     }
 }
 
@@ -126,9 +130,9 @@ fn a_calibrated_design_takes_more_of_the_rigid_phase_and_meets_its_stiffness() {
 fn three_phases_are_refused_by_name() {
     let text = DESIGN.replace("[\"FLX9070\", \"FLX9095\"]", "[\"TangoBlack\", \"FLX9070\", \"FLX9095\"]");
     let input = DesignInput::from_text(&text, Format::Toml, "test.toml", "test", Path::new("."));
-    let error = input.map_err(Error::Input).and_then(|input| {
-        voxelastica_core::Design::compute(&input, voxelastica_core::Limits::default()).map(|_| ())
-    });
+    let error = input
+        .map_err(Error::Input)
+        .and_then(|input| voxelastica_core::Design::compute(&input, voxelastica_core::Limits::default()).map(|_| ()));
     let error = error.unwrap_err();
     assert_eq!(error.exit_code(), 2);
     assert!(error.to_string().contains("voxels.match") && error.to_string().contains("two phases"), "{error}");
@@ -138,35 +142,89 @@ fn three_phases_are_refused_by_name() {
 #[test]
 #[ignore = "long"]
 fn tables_for_the_documentation() {
-    let middle = |rule: &MixtureRule| [0.25, 0.5, 0.75].map(|f| rule.modulus(f) / (1.0 - f + f * rule.bending_mpa[16]));
-    for contrast in [4.0, 12.6 / 3.1, 30.0, 3279.6] {
-        for pattern in [Pattern::Random, Pattern::RandomLayered, Pattern::Centred, Pattern::Split, Pattern::ThroughThickness, Pattern::OneEdge] {
+    let middle = |rule: &MixtureRule| [0.25, 0.5, 0.75].map(|f| rule.modulus(f) / (1.0 - f + f * rule.modulus(1.0)));
+    for contrast in [4.0, 30.0, 3279.6] {
+        for pattern in [Pattern::Random, Pattern::RandomLayered, Pattern::ThroughThickness] {
             for layers in [2, 4] {
-                let rule = rule(contrast, pattern, size(12, 6, layers), &[1, 2, 3, 4, 5, 6, 7, 8]);
+                let rule = rule(contrast, pattern, size(12, 6, layers), &[1, 2, 3, 4, 5, 6]);
                 println!(
                     "{contrast:.2} {pattern:?} {layers} layers: {:.3?} scatter {:.2} % interpolation {:.2} %",
-                    middle(&rule), rule.scatter_percent, rule.interpolation_error_percent
+                    middle(&rule),
+                    rule.scatter_percent,
+                    rule.interpolation_error_percent
                 );
             }
         }
     }
     for (what, size, seeds) in [
-        ("length 8", size(8, 6, 2), 1..=8),
-        ("length 24", size(24, 6, 2), 1..=8),
-        ("width 6", size(12, 3, 2), 1..=8),
-        ("width 24", size(12, 12, 2), 1..=8),
-        ("8 layers", size(12, 6, 8), 1..=2),
-        ("16 layers", size(12, 6, 16), 1..=1),
+        ("length 8", size(8, 6, 2), 1..=12),
+        ("length 12", size(12, 6, 2), 1..=12),
+        ("length 24", size(24, 6, 2), 1..=6),
+        ("width 6", size(12, 3, 2), 1..=12),
+        ("width 24", size(12, 12, 2), 1..=6),
+        ("8 layers", size(12, 6, 8), 1..=3),
+        ("16 layers", size(12, 6, 16), 1..=2),
         ("24 layers", size(12, 6, 24), 1..=1),
-        ("32 layers", size(12, 6, 32), 1..=1),
-        ("2 elements", BendingCellSize { elements_per_voxel: 2, ..size(12, 6, 2) }, 1..=4),
-        ("3 elements", BendingCellSize { elements_per_voxel: 3, ..size(12, 6, 2) }, 1..=2),
+        ("2 elements", BendingCellSize { elements_per_voxel: 2, ..size(12, 6, 2) }, 1..=3),
+        ("3 elements", BendingCellSize { elements_per_voxel: 3, ..size(12, 6, 2) }, 1..=1),
     ] {
         let start = std::time::Instant::now();
         let seeds: Vec<u64> = seeds.collect();
         for contrast in [4.0, 30.0] {
             let rule = rule(contrast, Pattern::Random, size, &seeds);
-            println!("{contrast} {what}: {:.3?} scatter {:.2} % {:.1?}", middle(&rule), rule.scatter_percent, start.elapsed());
+            println!(
+                "{contrast} {what}: {:.3?} scatter {:.2} % {:.1?}",
+                middle(&rule),
+                rule.scatter_percent,
+                start.elapsed()
+            );
+        }
+    }
+}
+
+/// What the calibrated counts do to the morph, every voxel resolved: `--ignored --nocapture`.
+#[test]
+#[ignore = "long"]
+fn calibrated_designs_miss_their_target_less() {
+    use voxelastica_core::fem::morph::{Lead, MorphOptions, solve};
+    use voxelastica_core::fem::{Model, Resolution};
+    let roof = "kind = \"inclination-polynomial\"\ncoefficients_deg = [6395, -28300, 52140, -51860, 30530, -11170, 2808, \
+                -570.8, 89.7]";
+    let high = "phases = [\"soft\", \"rigid\"]\n[[materials.custom]]\nname = \"soft\"\nmodulus_mpa = 1.0\npoisson = 0.3\n\
+                [[materials.custom]]\nname = \"rigid\"\nmodulus_mpa = 30.0\npoisson = 0.3";
+    let hemisphere = DESIGN.replace("phases = [", "phases = [");
+    let roof = DESIGN
+        .replace("kind = \"hemi-ellipsoid\"", roof)
+        .replace("count = 8", "count = 6")
+        .replace("hub_radius_mm = 4.0", "hub_radius_mm = 8.0")
+        .replace("phases = [\"FLX9070\", \"FLX9095\"]", high);
+    for (name, text, patterns) in
+        [("hemisphere", hemisphere, vec!["random", "centred"]), ("roof 30:1", roof, vec!["random", "random-layered"])]
+    {
+        for pattern in patterns {
+            for seed in 1..=4 {
+                let errors = ["modulus", "calibrated"].map(|matching| {
+                    let text = text.replace("\"calibrated\"", &format!("\"{matching}\""));
+                    let text = format!("{text}\n    pattern = \"{pattern}\"\n    seed = {seed}\n");
+                    let design = common::design(&text);
+                    let model = Model::of_design(&design, Resolution::Voxels(1)).unwrap();
+                    let lead = Lead::new(design.guide().unwrap(), design.voxel_path());
+                    let found = solve(&model, &lead, &MorphOptions::default(), &|_| true).unwrap();
+                    let profile = design.profile();
+                    let last = profile.s.len() - 1;
+                    let miss = |[s, x, z]: &[f64; 3]| {
+                        let i = (s / 40.0 * last as f64).round() as usize;
+                        (x - profile.x[i]).hypot(z - profile.z[i]) / 40.0
+                    };
+                    let largest = found.midline.iter().map(miss).fold(0.0, f64::max);
+                    let rms = (found.midline.iter().map(|p| miss(p).powi(2)).sum::<f64>() / found.midline.len() as f64)
+                        .sqrt();
+                    let thrust = voxelastica_core::output::Summary::of(&design).thrust.per_spoke;
+                    let force = found.reactions.rim.horizontal;
+                    [100.0 * largest, 100.0 * rms, force, thrust.beam.horizontal_n, thrust.plane_strain.horizontal_n]
+                });
+                println!("{name} {pattern} seed {seed}: modulus {:.3?}, calibrated {:.3?}", errors[0], errors[1]);
+            }
         }
     }
 }

@@ -130,9 +130,8 @@ fn enhanced_bricks_are_nearer_to_the_limit() {
     let size = CellSize::new(2).unwrap();
     let layout = Layout::read("10/01", size).unwrap();
     let (soft, rigid) = (material(3.1, 0.3), material(12.6, 0.3));
-    let along_x = |element, n| {
-        StretchTest::new(size, [&soft, &rigid], &mesh(element, n)).unwrap().moduli(layout).unwrap()[0]
-    };
+    let along_x =
+        |element, n| StretchTest::new(size, [&soft, &rigid], &mesh(element, n)).unwrap().moduli(layout).unwrap()[0];
     let [coarse, fine] = [1, 4].map(|n| [along_x(BrickKind::Trilinear, n), along_x(BrickKind::Enhanced, n)]);
     println!("trilinear {} {}, enhanced {} {}", coarse[0], fine[0], coarse[1], fine[1]);
     assert!(coarse[0] > fine[0] && coarse[1] > fine[1] && fine[0] > fine[1]);

@@ -110,7 +110,8 @@ fn matching_the_stiffness_meets_it_where_matching_the_modulus_does_not() {
     let lattice = Lattice { size_mm: 0.25, slices: 80, layers: 8 };
     let targets = targets(&lattice, 4.0, 1.0, Rounding::Nearest);
     let rms = |matching: Match, pattern: Pattern| {
-        let (_, slices) = fill(&lattice, &targets, &Filling { phases: &phases, pattern, seed: 3, matching, rule: None });
+        let (_, slices) =
+            fill(&lattice, &targets, &Filling { phases: &phases, pattern, seed: 3, matching, rule: None });
         let errors = slices.iter().map(|s| (s.section.stiffness / s.stiffness_target_nmm2 - 1.0).powi(2));
         (errors.sum::<f64>() / slices.len() as f64).sqrt()
     };
@@ -151,7 +152,8 @@ fn one_phase_limits_are_pure() {
         let targets = vec![SliceTarget { width_mm: 4.0, modulus_mpa: modulus, half_width: 4 }; 10];
         for pattern in PATTERNS {
             for matching in [Match::Modulus, Match::Stiffness] {
-                let (grid, _) = fill(&lattice, &targets, &Filling { phases: &phases, pattern, seed: 1, matching, rule: None });
+                let (grid, _) =
+                    fill(&lattice, &targets, &Filling { phases: &phases, pattern, seed: 1, matching, rule: None });
                 assert!(grid.phases().iter().all(|p| *p == full), "{pattern:?} {matching:?} {modulus}");
             }
         }

@@ -4,7 +4,9 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use voxelastica_core::materials::{Material, library};
-use voxelastica_core::micromechanics::unit_cell::{BrickKind, Catalogue, CellMesh, CellSize, Layout, LoadedFaces, Row, classes};
+use voxelastica_core::micromechanics::unit_cell::{
+    BrickKind, Catalogue, CellMesh, CellSize, Layout, LoadedFaces, Row, classes,
+};
 use voxelastica_core::output::unit_cells::write_unit_cells;
 use voxelastica_core::{DesignInput, Error, InputError};
 
@@ -82,18 +84,20 @@ fn report(cells: &Catalogue, seconds: f64, console: &Console) {
         console.warn("Reuss and Voigt bound cells with equal Poisson's ratios and faces that slide; these are not");
     }
     let departures = cells.departures();
-    let least = departures.iter().map(|d| d.in_plane[0]).fold(0.0, f64::min);
+    let farthest = |worst: f64, d: f64| if d.abs() > worst.abs() { d } else { worst };
+    let in_plane = departures.iter().flat_map(|d| d.in_plane).fold(0.0, farthest);
     let mean = cells
         .classes()
         .map(|row| f64::from(row.multiplicity) * 0.5 * (row.departure()[0] + row.departure()[1]))
         .sum::<f64>()
         / layouts;
-    let through = departures.iter().flat_map(|d| d.across).fold(0.0_f64, |worst, d| worst.max(d.abs()));
+    let through = departures.iter().flat_map(|d| d.across).fold(0.0, farthest);
+    let through =
+        if through.abs() < 1e-8 { "exactly".to_owned() } else { format!("{:+.2} % at worst", 100.0 * through) };
     console.say(format!(
-        "Voigt     along x and y {:.2} % on average and {:.2} % at worst; along z at most {:.1e} % off",
+        "Voigt     along x and y {:+.2} % on average and {:+.2} % at worst; along z {through}",
         100.0 * mean,
-        100.0 * least,
-        100.0 * through
+        100.0 * in_plane
     ));
 }
 
@@ -109,15 +113,26 @@ fn phases(options: &MicromechanicsOptions) -> Result<[Material; 2], Error> {
             Error::Input(error.in_file(&file.display().to_string()))
         });
     }
-    let read = |text: &str| phase(text).map_err(|error| Error::Input(error.in_file("--phases")));
-    match options.phases.as_slice() {
-        [soft, rigid] => Ok([read(soft)?, read(rigid)?]),
-        _ => Ok([read("FLX9070")?, read("FLX9095")?]),
+    let wrong = |error: InputError| Error::Input(error.in_file("--phases"));
+    let [soft, rigid] = match options.phases.as_slice() {
+        [soft, rigid] => [soft.as_str(), rigid.as_str()],
+        _ => ["FLX9070", "FLX9095"],
+    };
+    let phases = [phase(soft, "soft").map_err(wrong)?, phase(rigid, "rigid").map_err(wrong)?];
+    let [soft, rigid] = &phases;
+    if soft.modulus_mpa > rigid.modulus_mpa {
+        let problem = format!("{} MPa is stiffer than {} MPa", soft.modulus_mpa, rigid.modulus_mpa);
+        return Err(wrong(InputError::new("", "", problem).help("name the soft phase first")));
     }
+    if soft.label() == rigid.label() {
+        let problem = "both phases have one name";
+        return Err(wrong(InputError::new("", format!("\"{}\"", soft.name), problem).help("name two materials")));
+    }
+    Ok(phases)
 }
 
-/// `NAME`, `MODULUS` or `MODULUS:POISSON`.
-fn phase(text: &str) -> Result<Material, InputError> {
+/// `NAME`, `MODULUS` or `MODULUS:POISSON`; numbers make a material of the name `role`.
+fn phase(text: &str, role: &str) -> Result<Material, InputError> {
     let known = library();
     if let Some(material) = known.iter().find(|m| m.name.eq_ignore_ascii_case(text)) {
         return Ok(material.clone());
@@ -130,7 +145,7 @@ fn phase(text: &str) -> Result<Material, InputError> {
             .help(format!("known are: {}; or write MPa:POISSON, such as 3.1:0.3", names.join(", "))));
     };
     Ok(Material {
-        name: format!("{modulus_mpa} MPa"),
+        name: role.to_owned(),
         modulus_mpa,
         poisson,
         density_kg_m3: None,

@@ -45,9 +45,7 @@ impl MonotoneCubic {
         let h = self.x[i + 1] - self.x[i];
         let t = (x - self.x[i]) / h;
         let (s, t2) = (1.0 - t, t * t);
-        (1.0 + 2.0 * t) * s * s * self.y[i]
-            + t * s * s * h * self.slopes[i]
-            + t2 * (3.0 - 2.0 * t) * self.y[i + 1]
+        (1.0 + 2.0 * t) * s * s * self.y[i] + t * s * s * h * self.slopes[i] + t2 * (3.0 - 2.0 * t) * self.y[i + 1]
             - t2 * s * h * self.slopes[i + 1]
     }
 }

@@ -27,7 +27,8 @@ pub fn write_unit_cells(cells: &Catalogue, deck: Option<Layout>, folder: &Path) 
     staging.write("unit_cells.csv", |out| write_csv(cells, out))?;
     staging.write_text("unit_cells_modulus.svg", &moduli_svg(cells).map_err(drawn)?)?;
     staging.write_text("unit_cells_departure.svg", &departure_svg(cells).map_err(drawn)?)?;
-    let mut files = ["unit_cells.csv", "unit_cells_modulus.svg", "unit_cells_departure.svg"].map(str::to_owned).to_vec();
+    let mut files =
+        ["unit_cells.csv", "unit_cells_modulus.svg", "unit_cells_departure.svg"].map(str::to_owned).to_vec();
     let provenance = provenance(cells);
     let [soft, rigid] = cells.phases();
     if let Some(layout) = deck {

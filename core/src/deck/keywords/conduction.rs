@@ -54,12 +54,7 @@ impl Conductor {
 }
 
 /// A conducting material; what it has no value for is left out. With `current`, electrical conduction without Joule's heat.
-pub(crate) fn material(
-    sink: &mut Sink<'_>,
-    name: &str,
-    conductor: &Conductor,
-    current: bool,
-) -> Result<(), DeckError> {
+pub(crate) fn material(sink: &mut Sink<'_>, name: &str, conductor: &Conductor, current: bool) -> Result<(), DeckError> {
     sink.line(&format!("*MATERIAL, NAME={name}"))?;
     let mut property = |keyword: &str, value: Option<f64>| match value {
         Some(value) => {
@@ -102,8 +97,8 @@ pub(crate) fn time_points(sink: &mut Sink<'_>, name: &str, times: &[f64]) -> Res
 /// How a transient step goes forward, s and K.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Transient {
-    /// First increment.
-    pub first: f64,
+    /// Time in which the rim gets hot.
+    pub rise: f64,
     /// Duration.
     pub period: f64,
     /// Largest change of a temperature in one increment.

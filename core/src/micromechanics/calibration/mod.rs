@@ -26,12 +26,12 @@ const SLICES: usize = 12;
 const HALF_WIDTH: usize = 6;
 /// Layers above which the rule hardly changes any more: thicker strips take the rule of this many.
 pub const MOST_LAYERS: usize = 24;
-/// Parts into which the range of fractions is divided.
+/// Parts into which the range of fractions is divided, at least.
 const PARTS: usize = 16;
 /// Layers that the cells of one fraction have together, at least.
-const LAYERS_TOGETHER: usize = 16;
+const LAYERS_TOGETHER: usize = 24;
 /// Most cells of one fraction.
-const MOST_SEEDS: usize = 8;
+const MOST_SEEDS: usize = 12;
 /// Rules that are kept.
 const KEPT: usize = 64;
 
@@ -109,6 +109,17 @@ fn seeds(pattern: Pattern, layers: usize) -> Vec<u64> {
     (1..=count as u64).collect()
 }
 
+/// Parts into which the range of fractions is divided. Patterns whose stiffness has kinks get points there: where a layer is
+/// full, or where a slice has a whole number of column pairs, since slices would else take turns between two numbers.
+fn parts(pattern: Pattern, size: BendingCellSize) -> usize {
+    match pattern {
+        Pattern::Random | Pattern::RandomLayered => PARTS,
+        Pattern::ThroughThickness => size.layers * PARTS.div_ceil(size.layers),
+        Pattern::Centred | Pattern::Split => size.half_width,
+        Pattern::OneEdge => 2 * size.half_width,
+    }
+}
+
 /// Bends cells at evenly spaced fractions and makes the rule of them.
 ///
 /// # Errors
@@ -122,11 +133,12 @@ pub fn measure(
 ) -> Result<MixtureRule, CalibrationError> {
     let cell = BendingCell::new(size).ok_or(CalibrationError::Memory { layers: size.layers })?;
     let (soft, rigid) = (phases.softest(), phases.stiffest());
-    let tests: Vec<(usize, u64)> = (1..PARTS).flat_map(|part| seeds.iter().map(move |seed| (part, *seed))).collect();
+    let parts = parts(pattern, size);
+    let tests: Vec<(usize, u64)> = (1..parts).flat_map(|part| seeds.iter().map(move |seed| (part, *seed))).collect();
     let results = tests
         .par_iter()
         .map(|(part, seed)| {
-            let fraction = *part as f64 / PARTS as f64;
+            let fraction = *part as f64 / parts as f64;
             if cancelled() {
                 return Err(CalibrationError::Cancelled);
             }
@@ -147,8 +159,7 @@ pub fn measure(
         // Pieces of a strip follow each other: their compliances add up.
         let mean = count / results.iter().map(|r| 1.0 / r.bending_mpa).sum::<f64>();
         if results.len() > 1 {
-            let variance =
-                results.iter().map(|r| (r.bending_mpa / mean - 1.0).powi(2)).sum::<f64>() / (count - 1.0);
+            let variance = results.iter().map(|r| (r.bending_mpa / mean - 1.0).powi(2)).sum::<f64>() / (count - 1.0);
             scatter = scatter.max((variance / count).sqrt());
         }
         points.push([fraction, mean, voigt(&[1.0 - fraction, fraction], &[soft, rigid])]);

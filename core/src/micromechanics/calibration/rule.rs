@@ -38,11 +38,7 @@ pub struct RuleCell {
 
 impl MixtureRule {
     /// A rule through points that rise in fraction; points at which the modulus does not rise are left out.
-    pub(super) fn new(
-        points: &[[f64; 3]],
-        cell: RuleCell,
-        scatter_percent: f64,
-    ) -> Result<Self, CalibrationError> {
+    pub(super) fn new(points: &[[f64; 3]], cell: RuleCell, scatter_percent: f64) -> Result<Self, CalibrationError> {
         let mut rising: Vec<[f64; 3]> = Vec::with_capacity(points.len());
         for point in points {
             if rising.last().is_none_or(|last| point[0] > last[0] && point[1] > last[1]) {

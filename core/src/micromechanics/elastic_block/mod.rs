@@ -10,8 +10,8 @@ mod grid;
 mod support;
 mod system;
 
-pub use brick::BrickKind;
 pub(crate) use brick::Brick;
+pub use brick::BrickKind;
 pub(crate) use grid::Grid;
 pub(crate) use support::{CASES, Support};
 pub(crate) use system::BlockSystem;

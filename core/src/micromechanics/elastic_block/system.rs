@@ -52,11 +52,8 @@ impl BlockSystem {
             for p in 0..DOFS {
                 for q in 0..=p {
                     let (a, b) = (free[dofs[p]], free[dofs[q]]);
-                    let slot = if a == NONE || b == NONE {
-                        None
-                    } else {
-                        pattern.slot(a.max(b) as usize, a.min(b) as usize)
-                    };
+                    let slot =
+                        if a == NONE || b == NONE { None } else { pattern.slot(a.max(b) as usize, a.min(b) as usize) };
                     slots.push(slot.map_or(NONE, |slot| slot as u32));
                 }
             }

@@ -13,7 +13,9 @@ pub enum UnitCellError {
         edge: usize,
     },
     /// A layout that cannot be read.
-    #[error("\"{text}\" is no layout of a {cell} cell; write {voxels} digits, 0 for soft and 1 for rigid, row after row")]
+    #[error(
+        "\"{text}\" is no layout of a {cell} cell; write {voxels} digits, 0 for soft and 1 for rigid, row after row"
+    )]
     Layout {
         /// What was written.
         text: String,

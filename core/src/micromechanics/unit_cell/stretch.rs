@@ -102,10 +102,9 @@ impl StretchTest {
         let lengths = self.grid.lengths();
         let mut moduli = [0.0; 3];
         for (axis, system) in self.systems.iter().enumerate() {
-            let energies = system.energies(&self.bricks, &phase).ok_or_else(|| UnitCellError::Singular {
-                layout: layout.text(self.size),
-                contrast: self.contrast,
-            })?;
+            let energies = system
+                .energies(&self.bricks, &phase)
+                .ok_or_else(|| UnitCellError::Singular { layout: layout.text(self.size), contrast: self.contrast })?;
             // The faces move apart by one.
             let area = lengths[(axis + 1) % 3] * lengths[(axis + 2) % 3];
             moduli[axis] = energies[0][0] * lengths[axis] / area;
