@@ -72,7 +72,8 @@ def test_pure_phases_have_their_own_conductivities(program: Path, tmp_path: Path
 
 @pytest.fixture(scope="module")
 def composite(program: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = strip("modulus_ratio = 0.5\nshortening = 0.5", tmp_path_factory.mktemp("conduct"), "composite")
+    more = "[conduction]\ngraded_elements = [20, 6, 2]"
+    folder = strip("modulus_ratio = 0.5\nshortening = 0.5", tmp_path_factory.mktemp("conduct"), "composite", more=more)
     conduct(folder, "--shape", "both", "--model", "both", "--ashby", "--time-tolerance", "1e-4")
     return folder
 

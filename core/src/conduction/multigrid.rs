@@ -114,7 +114,7 @@ impl Multigrid {
             inverse_diagonal: operator.inverse_diagonal(),
             largest: self.largest_eigenvalue,
         };
-        smoother.from_zero(residual, out, own);
+        smoother.start(residual, out, own);
         if !go_on() {
             return;
         }
@@ -143,7 +143,7 @@ fn cycle(level: &Level, rest: &[Level], coarsest: &Dense, work: &mut [Work]) {
             inverse_diagonal: level.stencil.inverse_diagonal(),
             largest: level.largest_eigenvalue,
         };
-        smoother.from_zero(&residual, &mut correction, own);
+        smoother.start(&residual, &mut correction, own);
         level.stencil.apply(&correction, &mut own.product);
         let mut rest_residual = std::mem::take(&mut own.direction);
         difference(&residual, &own.product, &mut rest_residual);
@@ -180,7 +180,7 @@ struct Chebyshev<'a> {
 
 impl Chebyshev<'_> {
     /// Smooths from zero: `u` is overwritten.
-    fn from_zero(&self, residual: &[f64], u: &mut [f64], work: &mut Work) {
+    fn start(&self, residual: &[f64], u: &mut [f64], work: &mut Work) {
         u.fill(0.0);
         self.steps(residual, u, work, true);
     }

@@ -175,7 +175,8 @@ pub fn integrate(
     let (mut load, mut change) = (vec![0.0; n], vec![0.0; n]);
     watch.at(0.0)?;
     while time < options.end * (1.0 - 1e-12) {
-        if effort.steps + effort.rejected >= MOST_STEPS || !(step > 1e-14 * time.max(options.first_step)) {
+        if effort.steps + effort.rejected >= MOST_STEPS || step.is_nan() || step <= 1e-14 * time.max(options.first_step)
+        {
             return Err(ConductionError::StepTooSmall { time_s: time, step_s: step, tolerance: options.tolerance });
         }
         // Solves only ask whether to go on; steps tell how far they are.
