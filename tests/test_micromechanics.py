@@ -90,7 +90,9 @@ def test_decks_of_a_layout_pass_the_checker(program: Path, tmp_path: Path) -> No
     ("arguments", "part"),
     [
         (("--phases", "FLX9070", "rubber"), "rubber"),
-        (("--phases", "FLX9070", "-5:0.3"), "must be positive"),
+        (("--phases", "0:0.3", "FLX9070"), "must be positive"),
+        (("--phases", "FLX9095", "FLX9070"), "soft phase first"),
+        (("--phases", "FLX9070", "FLX9070"), "both phases"),
         (("--phases", "FLX9070", "5:0.5"), "0.499"),
         (("--deck", "1010"), "9 digits"),
         (("--design", "nowhere.toml"), "nowhere.toml"),

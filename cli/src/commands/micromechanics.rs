@@ -125,8 +125,8 @@ fn phases(options: &MicromechanicsOptions) -> Result<[Material; 2], Error> {
         return Err(wrong(InputError::new("", "", problem).help("name the soft phase first")));
     }
     if soft.label() == rigid.label() {
-        let problem = "both phases have one name";
-        return Err(wrong(InputError::new("", format!("\"{}\"", soft.name), problem).help("name two materials")));
+        let problem = format!("both phases are called \"{}\"", soft.name);
+        return Err(wrong(InputError::new("", "", problem).help("name two materials")));
     }
     Ok(phases)
 }
@@ -141,7 +141,7 @@ fn phase(text: &str, role: &str) -> Result<Material, InputError> {
     let number = |text: &str| text.trim().parse::<f64>().ok();
     let Some((modulus_mpa, poisson)) = number(modulus).zip(poisson.map_or(Some(DEFAULT_POISSON), number)) else {
         let names: Vec<&str> = known.iter().map(|m| m.name.as_str()).collect();
-        return Err(InputError::new("", format!("\"{text}\""), "this material is not known")
+        return Err(InputError::new("", "", format!("the material \"{text}\" is not known"))
             .help(format!("known are: {}; or write MPa:POISSON, such as 3.1:0.3", names.join(", "))));
     };
     Ok(Material {
