@@ -32,7 +32,7 @@ pub struct Arguments {
 pub enum Command {
     /// Design a flower: widths, modulus, voxels, decks and a report.
     Design(DesignOptions),
-    /// Let CalculiX morph a design and compare the result with the target.
+    /// Morph a design with every voxel resolved and compare the result with the target.
     Verify(VerifyOptions),
     /// Make the files to print, cut and assemble a design.
     Fabricate(FabricateOptions),
@@ -56,7 +56,12 @@ pub struct DesignOptions {
     /// Folder to write into [default: out/NAME].
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
-    /// Do it even if there are more than 200 million voxels or the disk seems too small.
+    /// Correct the modulus with the finite elements inside, at most N times [default with this option: 4, without:
+    /// refine.iterations of the design file].
+    #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "4",
+          value_parser = clap::value_parser!(u8).range(0..=20))]
+    pub refine: Option<u8>,
+    /// Do it even if there are more than 200 million voxels or the disk or the memory seems too small.
     #[arg(long)]
     pub yes: bool,
 }
@@ -66,12 +71,15 @@ pub struct DesignOptions {
 pub struct VerifyOptions {
     /// Folder that `design` wrote.
     pub folder: PathBuf,
-    /// Which deck to solve.
-    #[arg(long, value_enum, default_value_t = ModelChoice::Graded)]
+    /// Which model to solve.
+    #[arg(long, value_enum, default_value_t = ModelChoice::Voxel)]
     pub model: ModelChoice,
-    /// Which solver to use.
-    #[arg(long, value_enum, default_value_t = SolverChoice::Ccx)]
+    /// Which solver to use: the one inside, or CalculiX on the deck in the folder.
+    #[arg(long, value_enum, default_value_t = SolverChoice::Embedded)]
     pub solver: SolverChoice,
+    /// Elements along a voxel's edge, for the solver inside.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=8))]
+    pub elements_per_voxel_edge: u8,
     /// The CalculiX program.
     #[arg(long, value_name = "PATH", default_value = "ccx")]
     pub ccx: PathBuf,
@@ -81,9 +89,12 @@ pub struct VerifyOptions {
     /// Exit with 6 if the largest error exceeds this share of the length, percent.
     #[arg(long, value_name = "PCT", value_parser = positive)]
     pub target_error: Option<f64>,
-    /// Keep the solver's files in this folder.
+    /// Keep CalculiX's files in this folder.
     #[arg(long, value_name = "DIR")]
     pub keep: Option<PathBuf>,
+    /// Do it even if it seems to need more memory than there is.
+    #[arg(long)]
+    pub yes: bool,
 }
 
 /// Options of `fabricate`.
@@ -296,6 +307,8 @@ pub enum ModelChoice {
 /// Solvers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum SolverChoice {
+    /// The finite elements inside.
+    Embedded,
     /// CalculiX.
     Ccx,
 }

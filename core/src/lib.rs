@@ -65,6 +65,7 @@ mod numerics;
 pub mod output;
 pub mod profile;
 pub mod progress;
+pub mod refine;
 pub mod report;
 pub mod results;
 pub mod solver;

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use voxelastica_core::input::TargetInput;
 use voxelastica_core::output::write::{OutputKind, WriteOptions, Written, write_outputs};
+use voxelastica_core::refine::refine;
+use voxelastica_core::results::EmbeddedOptions;
 use voxelastica_core::{Design, DesignInput, Error, Limits};
 
 use super::figures;
@@ -13,8 +15,8 @@ use crate::console::{Console, WRITING};
 /// Reads, computes and writes a design.
 pub fn run(options: &DesignOptions, console: &Console) -> Result<u8, Error> {
     let input = DesignInput::read(&options.file)?;
-    let design = Design::compute(&input, Limits { allow_large: options.yes })
-        .map_err(|error| error.in_file(&options.file.display().to_string()))?;
+    let design =
+        compute(&input, options, console).map_err(|error| error.in_file(&options.file.display().to_string()))?;
     let folder = options.output.clone().unwrap_or_else(|| PathBuf::from("out").join(&input.name));
     let bar = console.bar(1, WRITING, "writing");
     let progress = |work: u64| {
@@ -35,6 +37,29 @@ pub fn run(options: &DesignOptions, console: &Console) -> Result<u8, Error> {
         console.detail(format!("          {file}"));
     }
     Ok(0)
+}
+
+/// Computes a design, refined where that was asked for and has not been done yet.
+fn compute(input: &DesignInput, options: &DesignOptions, console: &Console) -> Result<Design, Error> {
+    let limits = Limits { allow_large: options.yes };
+    let recorded = input.refine.as_ref();
+    let wanted = recorded.filter(|refine| refine.correction.is_empty()).map_or(0, |refine| refine.iterations);
+    let iterations = options.refine.map_or(wanted, usize::from);
+    if iterations == 0 {
+        return Design::compute(input, limits);
+    }
+    let mut how = EmbeddedOptions::default();
+    if options.yes {
+        how.morph.memory_limit = Some(u64::MAX);
+    }
+    let bar = console.bar(1000, "{msg} [{wide_bar}] {percent} % {elapsed}", "refining");
+    let progress = |share: f64| {
+        bar.set_position((1000.0 * share) as u64);
+        !console.is_cancelled()
+    };
+    let refined = refine(input, limits, iterations, &how, &progress);
+    bar.finish_and_clear();
+    refined.map(|refined| refined.design)
 }
 
 fn report(design: &Design, written: &Written, console: &Console) {
@@ -79,6 +104,14 @@ fn report(design: &Design, written: &Written, console: &Console) {
     }
     let voxels: Vec<String> = summary.voxels.iter().map(|(name, count)| format!("{count} {name}")).collect();
     console.say(format!("voxels    {} a strip: {}", summary.voxels_per_spoke, voxels.join(", ")));
+    if let Some(refined) = &summary.refinement {
+        console.say(format!(
+            "refined   {} % of the length off the target instead of {} %, by {} finite-element solutions",
+            figures(refined.error_after_percent),
+            figures(refined.error_before_percent),
+            refined.solutions
+        ));
+    }
     if let Some(error) = summary.predicted_error_percent {
         console.say(format!("predicted {} % of the length off the target", figures(error)));
     }

@@ -30,6 +30,9 @@ pub struct DesignInput {
     pub materials: MaterialsInput,
     /// The voxels.
     pub voxels: VoxelsInput,
+    /// Correction by finite elements; absent where there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub refine: Option<RefineInput>,
     /// The decks.
     pub decks: DecksInput,
     /// The files to make the thing; absent where the design file says nothing about them.
@@ -188,6 +191,56 @@ pub struct VoxelsInput {
     pub matching: Match,
     /// Rounding of the half-width.
     pub rounding: Rounding,
+}
+
+/// Correction of the modulus by finite elements.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RefineInput {
+    /// Solutions that may be spent on it; zero for none.
+    #[serde(default)]
+    pub iterations: usize,
+    /// Factors of the voxels' modulus at evenly spaced arc lengths, rim first, that were found.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub correction: Vec<f64>,
+    /// Largest distance from the target, percent of the length: without a correction, and after every step.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub errors_percent: Vec<f64>,
+}
+
+impl RefineInput {
+    /// Most factors of a correction.
+    pub const MOST_FACTORS: usize = 1001;
+    /// Smallest and largest factor.
+    pub const FACTORS: [f64; 2] = [0.01, 100.0];
+
+    /// The factor at a share of the strip's length, linear between the recorded ones; one without a correction.
+    #[must_use]
+    pub fn factor(&self, share: f64) -> f64 {
+        let (Some(last), Some(first)) = (self.correction.len().checked_sub(1), self.correction.first()) else {
+            return 1.0;
+        };
+        let at = (share * last as f64).clamp(0.0, last as f64);
+        let i = (at as usize).min(last.saturating_sub(1));
+        let (low, high) = (self.correction.get(i).unwrap_or(first), self.correction.get(i + 1).unwrap_or(first));
+        low + (at - i as f64) * (high - low)
+    }
+
+    fn validate(&self) -> Result<(), InputError> {
+        let [least, most] = Self::FACTORS;
+        if self.correction.len() > Self::MOST_FACTORS {
+            let problem = format!("a correction has at most {} factors", Self::MOST_FACTORS);
+            return Err(InputError::new("refine.correction", self.correction.len(), problem));
+        }
+        match self.correction.iter().position(|f| !(least..=most).contains(f)) {
+            Some(i) => {
+                let problem = format!("factors lie between {least} and {most}");
+                Err(InputError::new(format!("refine.correction.{i}"), self.correction[i], problem)
+                    .help("design again with iterations and without a correction"))
+            }
+            None => Ok(()),
+        }
+    }
 }
 
 /// A kind of deck.
@@ -433,6 +486,9 @@ impl DesignInput {
         }
         if let Some(conduction) = &self.conduction {
             conduction.validate()?;
+        }
+        if let Some(refine) = &self.refine {
+            refine.validate()?;
         }
         let size = self.voxels.size_mm;
         Lattice::new(self.strips.length_mm, self.strips.thickness_mm, size)

@@ -407,6 +407,24 @@ const DESIGN: &[Parameter] = &[
         ..BASE
     },
     Parameter {
+        key: "refine.iterations",
+        kind: Kind::Integer { least: 0, most: 20 },
+        description: "Finite-element solutions that may be spent on correcting the modulus; none without this table.",
+        ..BASE
+    },
+    Parameter {
+        key: "refine.correction",
+        kind: Kind::Recorded,
+        description: "Factors of the voxels' modulus from rim to hub that were found.",
+        ..BASE
+    },
+    Parameter {
+        key: "refine.errors_percent",
+        kind: Kind::Recorded,
+        description: "Largest distance from the target before and after every step.",
+        ..BASE
+    },
+    Parameter {
         key: "decks.write",
         kind: Kind::Choices {
             choices: &[
