@@ -93,7 +93,8 @@ impl Design {
 
         let outline = outline(input, &lattice, &body, limits)?;
         let rule = mixture_rule(input, &phases, lattice.layers, cancelled)?;
-        let scale_mpa = scale(input, &phases, rule.as_deref(), &lattice, &outline, voxel_contrast(input, &outline, contrast));
+        let scale_mpa =
+            scale(input, &phases, rule.as_deref(), &lattice, &outline, voxel_contrast(input, &outline, contrast));
         let targets: Vec<SliceTarget> = outline
             .iter()
             .map(|o| SliceTarget {

@@ -92,7 +92,16 @@ const CALLS: &[(&str, Call)] = calls! {
     voxelastica_design_hub(s) Some(voxelastica_design_hub(
         handle(s), 0, 0.5, s.buffer.0.cast(), s.buffer.1, s.error));
     voxelastica_design_write(s) Some(voxelastica_design_write(
-        handle(s), s.text.0, s.text.1, 127, false, None, ptr::null_mut(), s.out.cast(), s.error));
+        handle(s), s.text.0, s.text.1, 255, false, None, ptr::null_mut(), s.out.cast(), s.error));
+    voxelastica_design_verify(s) Some(voxelastica_design_verify(
+        handle(s), 0, None, ptr::null_mut(), s.out.cast(), s.error));
+    voxelastica_design_refine(s) Some(voxelastica_design_refine(
+        handle(s), 1, false, None, ptr::null_mut(), s.out.cast(), s.error));
+    voxelastica_design_input(s) Some(voxelastica_design_input(handle(s), s.out.cast(), s.error));
+    voxelastica_design_conduct(s) Some(voxelastica_design_conduct(
+        handle(s), 0, 0, 0, 0, None, ptr::null_mut(), s.out.cast(), s.error));
+    voxelastica_design_fabricate(s) Some(voxelastica_design_fabricate(
+        handle(s), s.text.0, s.text.1, 0, false, None, ptr::null_mut(), s.out.cast(), s.error));
     voxelastica_design_free(s) freed(s, voxelastica_design_free(handle(s)));
     voxelastica_mesh_new(s) Some(voxelastica_mesh_new(handle(s), 0, 0.5, 0, 4, 4, s.out.cast(), s.error));
     voxelastica_mesh_positions(s) Some(voxelastica_mesh_positions(handle(s), s.out.cast(), s.error));

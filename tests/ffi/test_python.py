@@ -184,6 +184,45 @@ def test_writing_by_kind(tmp_path: Path) -> None:
     assert caught.value.key == "decks.write"
 
 
+CONDUCTING = SMALL.replace('["FLX9070", "FLX9095"]', '["PI + 15 % graphite", "PLA + 30 % carbon fibre"]')
+
+
+def test_a_design_is_solved_corrected_and_made(tmp_path: Path) -> None:
+    import voxelastica
+
+    design = voxelastica.Design.from_toml(SMALL)
+    told: list[tuple[int, int]] = []
+    found = design.verify(progress=lambda done, total: told.append((done, total)))
+    assert told[-1] == (1000, 1000) and found["solver"]["name"] == "embedded"
+    assert 0 < found["rms_error_percent"] <= found["max_error_percent"] < 5 and len(found["midline_mm"]) == 21
+    refined = design.refine(2)
+    assert refined.input["refine"]["errors_percent"][0] == pytest.approx(found["max_error_percent"], abs=1e-3)
+    assert refined.hash != design.hash and voxelastica.Design.from_json(refined.to_json()).hash == refined.hash
+    assert refined.verify()["max_error_percent"] <= found["max_error_percent"]
+    files = design.fabricate(tmp_path, ["svg", "stl"])
+    assert all(file.is_file() for file in files) and any(file.suffix == ".stl" for file in files)
+    with pytest.raises(ValueError, match="files to make"):
+        design.fabricate(tmp_path, ["paper"])
+    with pytest.raises(voxelastica.VoxelasticaError) as caught:
+        design.verify(progress=lambda done, total: False)
+    assert caught.value.code == caught.value.CANCELLED
+
+
+def test_heat_and_current_flow_and_say_what_is_assumed() -> None:
+    import voxelastica
+
+    design = voxelastica.Design.from_toml(CONDUCTING)
+    heat = design.conduct("heat", regime="both")
+    steady = heat["steady"]
+    assert steady["series_bound"] <= steady["effective_conductivity"] <= steady["parallel_bound"]
+    assert heat["assumptions"] and heat["transient"]["critical_times_s"][-1] > 0
+    with pytest.raises(ValueError, match="flow must be one of"):
+        design.conduct("water")  # type: ignore[arg-type]
+    with pytest.raises(voxelastica.VoxelasticaError) as caught:
+        voxelastica.Design.from_toml(SMALL).conduct("heat")
+    assert caught.value.code == caught.value.INPUT
+
+
 def test_the_flower_is_its_spokes_turned(design) -> None:
     flower = design.flower(along=20, across=4)
     positions, normals = flower.buffer("d"), flower.buffer("d")

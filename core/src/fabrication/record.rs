@@ -8,8 +8,8 @@ use serde_json::{Map, Value, json};
 use super::{FOLDER, Made};
 use crate::input::files::read_bytes;
 use crate::input::{FabricationInput, FabricationKind};
-use crate::progress::never;
 use crate::output::Provenance;
+use crate::progress::never;
 
 /// Name and version of the format of `fabrication.json`.
 pub const SCHEMA: &str = "voxelastica/fabrication/1";
@@ -36,7 +36,8 @@ impl Earlier {
     #[must_use]
     pub fn read(folder: &Path) -> Self {
         let read = || {
-            let mut value: Value = serde_json::from_slice(&read_bytes(&folder.join(FILE), LARGEST, &never).ok()?).ok()?;
+            let mut value: Value =
+                serde_json::from_slice(&read_bytes(&folder.join(FILE), LARGEST, &never).ok()?).ok()?;
             (value["schema"] == SCHEMA).then_some(())?;
             let kinds = value["kinds"].as_object_mut().map(std::mem::take)?;
             Some(Self { provenance: value["provenance"].take(), kinds })

@@ -9,7 +9,7 @@ use voxelastica::failure::Failure;
 use voxelastica::flower::PreparedFlower;
 use voxelastica::progress::{Watch, watched};
 use voxelastica::status::Status;
-use voxelastica::{design, input, lists, mesh, outputs, path, profile, voxels};
+use voxelastica::{conduct, design, fabricate, input, lists, mesh, outputs, path, profile, verify, voxels};
 use voxelastica_core::input::files::Format;
 use voxelastica_core::output::{Provenance, Summary};
 use voxelastica_core::surface::SpokeSurface;
@@ -62,6 +62,29 @@ pub mod ffi {
         fn phase_centres(self: &CxxDesign, phase: usize) -> Result<Vec<f64>>;
         fn hub(self: &CxxDesign, strip: i32, fraction: f64) -> Result<Vec<f64>>;
         fn write(
+            self: &CxxDesign,
+            folder: &[u8],
+            kinds: u32,
+            allow_large: bool,
+            progress: &Progress,
+        ) -> Result<Vec<String>>;
+
+        fn verify(self: &CxxDesign, model: i32, progress: &Progress) -> Result<String>;
+        fn refine(
+            self: &CxxDesign,
+            iterations: usize,
+            allow_large: bool,
+            progress: &Progress,
+        ) -> Result<Box<CxxDesign>>;
+        fn conduct(
+            self: &CxxDesign,
+            flow: i32,
+            model: i32,
+            shape: i32,
+            regime: i32,
+            progress: &Progress,
+        ) -> Result<String>;
+        fn fabricate(
             self: &CxxDesign,
             folder: &[u8],
             kinds: u32,
@@ -184,14 +207,43 @@ pub struct CxxDesign {
 }
 
 fn compute(input: &CxxInput, allow_large: bool, progress: &ffi::Progress) -> Result<Box<CxxDesign>> {
-    enter(|| {
-        let design = told(progress, |watch| design::compute(&input.0, allow_large, watch))?;
-        let outline = design.profile().flat_outline();
-        Ok(Box::new(CxxDesign { design: Arc::new(design), outline }))
-    })
+    enter(|| Ok(Box::new(CxxDesign::new(told(progress, |watch| design::compute(&input.0, allow_large, watch))?))))
 }
 
 impl CxxDesign {
+    fn new(design: Design) -> Self {
+        let outline = design.profile().flat_outline();
+        Self { design: Arc::new(design), outline }
+    }
+
+    fn verify(&self, model: i32, progress: &ffi::Progress) -> Result<String> {
+        enter(|| {
+            let model = verify::model(model)?;
+            input::to_json(&told(progress, |watch| verify::verify(&self.design, model, watch))?)
+        })
+    }
+
+    fn refine(&self, iterations: usize, allow_large: bool, progress: &ffi::Progress) -> Result<Box<Self>> {
+        enter(|| {
+            let work = |watch: &Watch| verify::refined(&self.design, iterations, allow_large, watch);
+            Ok(Box::new(Self::new(told(progress, work)?)))
+        })
+    }
+
+    fn conduct(&self, flow: i32, model: i32, shape: i32, regime: i32, progress: &ffi::Progress) -> Result<String> {
+        enter(|| {
+            let case = conduct::Case { flow, model, shape, regime };
+            input::to_json(&told(progress, |watch| conduct::conduct(&self.design, case, watch))?)
+        })
+    }
+
+    fn fabricate(&self, folder: &[u8], kinds: u32, allow_large: bool, progress: &ffi::Progress) -> Result<Vec<String>> {
+        enter(|| {
+            let folder = Path::new(checked("folder", folder)?);
+            Ok(told(progress, |watch| fabricate::fabricate(&self.design, folder, kinds, allow_large, watch))?.files)
+        })
+    }
+
     fn summary(&self) -> Result<String> {
         enter(|| input::to_json(&Summary::of(&self.design)))
     }
