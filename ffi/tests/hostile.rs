@@ -7,8 +7,10 @@ use std::collections::BTreeSet;
 use std::ffi::c_char;
 use std::ptr;
 
+use voxelastica::conduct::*;
 use voxelastica::design::*;
 use voxelastica::error::*;
+use voxelastica::fabricate::*;
 use voxelastica::flower::*;
 use voxelastica::input::*;
 use voxelastica::lists::*;
@@ -18,6 +20,7 @@ use voxelastica::path::*;
 use voxelastica::profile::*;
 use voxelastica::status::Status;
 use voxelastica::text::*;
+use voxelastica::verify::*;
 use voxelastica::voxels::*;
 
 /// How a call is spoilt.

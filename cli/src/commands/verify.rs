@@ -1,5 +1,8 @@
 //! `voxelastica verify`.
 
+use std::path::Path;
+
+use voxelastica_core::output::Provenance;
 use voxelastica_core::output::folder::Staging;
 use voxelastica_core::output::json;
 use voxelastica_core::report::{VerificationPicture, verification_svg};
@@ -38,6 +41,7 @@ impl Solved {
 pub fn run(options: &VerifyOptions, console: &Console) -> Result<u8, Error> {
     let path = options.folder.join("design.json");
     let design = designed(&options.folder)?;
+    require_unchanged(&design, &path)?;
     let model = match options.model {
         ModelChoice::Graded => Model::Graded,
         ModelChoice::Voxel => Model::Voxel,
@@ -61,6 +65,20 @@ pub fn run(options: &VerifyOptions, console: &Console) -> Result<u8, Error> {
             Ok(MISSED)
         }
         _ => Ok(0),
+    }
+}
+
+/// Refuses a `design.json` whose design is not the one that the folder's files were written from.
+fn require_unchanged(design: &Design, path: &Path) -> Result<(), Error> {
+    let text = std::fs::read_to_string(path).unwrap_or_default();
+    let recorded: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+    match recorded["provenance"]["design_sha256"].as_str() {
+        Some(hash) if hash != Provenance::of(design.input()).design_sha256 => {
+            let problem = "the design was changed after the files beside it were written";
+            let error = InputError::new("design", "", problem).help("run design again");
+            Err(Error::Input(error.in_file(&path.display().to_string())))
+        }
+        _ => Ok(()),
     }
 }
 
