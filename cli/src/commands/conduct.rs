@@ -21,7 +21,8 @@ pub fn run(options: &ConductOptions, console: &Console) -> Result<u8, Error> {
     }
     let shown = path.display().to_string();
     let located = |error: Error| error.in_file(&shown);
-    let design = Design::compute(&DesignInput::read(&path)?, Limits { allow_large: true })?;
+    let limits = Limits { allow_large: true };
+    let design = Design::compute_unless(&DesignInput::read(&path)?, limits, &|| console.is_cancelled())?;
     let input = parameters(&design, options);
     input.validate().map_err(|e| located(Error::Input(e)))?;
 
