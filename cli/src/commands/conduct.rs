@@ -14,7 +14,7 @@ use crate::console::Console;
 
 /// Solves heat and current on a design's strip.
 pub fn run(options: &ConductOptions, console: &Console) -> Result<u8, Error> {
-    let design = designed(&options.folder)?;
+    let design = designed(&options.folder, console)?;
     let shown = options.folder.join("design.json").display().to_string();
     let located = |error: Error| error.in_file(&shown);
     let input = parameters(&design, options);

@@ -14,7 +14,7 @@ use crate::console::{Console, WRITING};
 
 /// Reads, computes and writes a design.
 pub fn run(options: &DesignOptions, console: &Console) -> Result<u8, Error> {
-    let input = DesignInput::read(&options.file)?;
+    let input = DesignInput::read_unless(&options.file, &|| console.is_cancelled())?;
     let design =
         compute(&input, options, console).map_err(|error| error.in_file(&options.file.display().to_string()))?;
     let folder = options.output.clone().unwrap_or_else(|| PathBuf::from("out").join(&input.name));
@@ -46,7 +46,7 @@ fn compute(input: &DesignInput, options: &DesignOptions, console: &Console) -> R
     let wanted = recorded.filter(|refine| refine.correction.is_empty()).map_or(0, |refine| refine.iterations);
     let iterations = options.refine.map_or(wanted, usize::from);
     if iterations == 0 {
-        return Design::compute(input, limits);
+        return Design::compute_unless(input, limits, &|| console.is_cancelled());
     }
     let mut how = EmbeddedOptions::default();
     if options.yes {

@@ -10,7 +10,7 @@ use crate::console::{Console, WRITING};
 
 /// Makes files of a design that was written before.
 pub fn run(options: &FabricateOptions, console: &Console) -> Result<u8, Error> {
-    let design = designed(&options.folder)?;
+    let design = designed(&options.folder, console)?;
     let bar = console.bar(1, WRITING, "making");
     let progress = |work: u64| {
         bar.set_position(work);

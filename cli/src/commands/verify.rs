@@ -11,7 +11,7 @@ use voxelastica_core::results::{
     EmbeddedOptions, EmbeddedVerification, Verification, compare, verify, verify_embedded,
 };
 use voxelastica_core::solver::ccx::{Ccx, Status};
-use voxelastica_core::{Design, Error};
+use voxelastica_core::{Design, Error, InputError};
 
 use super::designed;
 use crate::args::{ModelChoice, SolverChoice, VerifyOptions};
@@ -40,7 +40,7 @@ impl Solved {
 /// Solves a strip of a design and says how far the result is from the target.
 pub fn run(options: &VerifyOptions, console: &Console) -> Result<u8, Error> {
     let path = options.folder.join("design.json");
-    let design = designed(&options.folder)?;
+    let design = designed(&options.folder, console)?;
     require_unchanged(&design, &path)?;
     let model = match options.model {
         ModelChoice::Graded => Model::Graded,

@@ -104,7 +104,7 @@ impl Maker for Stl {
                 let mut counted = counter.counting(out);
                 stl::write(&mut counted, job.provenance, bodies, &|| counter.is_cancelled())
                     .map(|_| ())
-                    .map_err(|error| WriteFailure::from(error))
+                    .map_err(WriteFailure::from)
             })?;
             made.files.push(path.clone());
             made.listed.push((path, what));
@@ -207,7 +207,7 @@ impl Maker for ThreeMf {
         let path = format!("{FOLDER}/{}.3mf", scope_name(job));
         staging.write(&path, |out| {
             let mut counted = counter.counting(out);
-            document.write(&mut counted, &|| counter.is_cancelled()).map_err(|error| WriteFailure::from(error))
+            document.write(&mut counted, &|| counter.is_cancelled()).map_err(WriteFailure::from)
         })?;
         let mut details = details(job, &scene, &tallies);
         details.insert("geometry".to_owned(), json!(job.input.three_mf_geometry));

@@ -292,7 +292,7 @@ impl DeckKind {
     }
 
     /// Keys of a material that the deck cannot do without.
-    fn needs(self) -> &'static [(&'static str, fn(&Material) -> Option<f64>)] {
+    fn needs(self) -> &'static [(&'static str, MaterialValue)] {
         match self {
             Self::VoxelHeat | Self::GradedHeat => &[("conductivity_w_mk", |m| m.conductivity_w_mk)],
             Self::VoxelCurrent | Self::GradedCurrent => &[
@@ -303,6 +303,9 @@ impl DeckKind {
         }
     }
 }
+
+/// A value that a material may have.
+type MaterialValue = fn(&Material) -> Option<f64>;
 
 /// A solver that decks are written for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
