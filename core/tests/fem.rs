@@ -116,7 +116,7 @@ fn a_guided_beam_has_its_closed_form_stiffness_and_converges() {
         })
         .collect();
     let order = (errors[0] / errors[2]).log2() / 2.0;
-    println!("guided beam: errors {errors:.2e?}, order {order:.2}");
+    println!("guided beam: errors {errors:?}, order {order:.2}");
     assert!(errors[3] < 2e-3, "{errors:?}");
     assert!(order > 1.7, "{errors:?}");
 }
@@ -142,7 +142,7 @@ fn a_strip_under_pure_bending_closes_to_half_a_circle() {
         errors.push([found.midline.iter().map(off).fold(0.0, f64::max), (-rim.moment / bending - 1.0).abs()]);
     }
     let order = |k: usize| (errors[0][k] / errors[2][k]).log2() / 2.0;
-    println!("half circle: errors of place and moment {errors:.2e?}, orders {:.2} {:.2}", order(0), order(1));
+    println!("half circle: errors of place and moment {errors:?}, orders {:.2} {:.2}", order(0), order(1));
     assert!(errors[2][0] < 2e-4 && errors[2][1] < 5e-3, "{errors:?}");
     assert!(order(1) > 1.5, "{errors:?}");
 }

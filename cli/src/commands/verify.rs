@@ -23,7 +23,7 @@ const MISSED: u8 = 6;
 /// What was solved, and by what.
 enum Solved {
     /// CalculiX read a deck.
-    Deck(Verification),
+    Deck(Box<Verification>),
     /// The finite elements inside solved the design itself.
     Inside(Box<EmbeddedVerification>),
 }
@@ -50,7 +50,7 @@ pub fn run(options: &VerifyOptions, console: &Console) -> Result<u8, Error> {
         SolverChoice::Embedded => inside(&design, options, model, console)
             .map(|solved| Solved::Inside(Box::new(solved)))
             .map_err(|error| error.in_file(&path.display().to_string())),
-        SolverChoice::Ccx => deck(&design, options, model, console).map(Solved::Deck),
+        SolverChoice::Ccx => deck(&design, options, model, console).map(|solved| Solved::Deck(Box::new(solved))),
     }?;
     write(&design, options, &solved)?;
     tell(options, &solved, console);
