@@ -231,7 +231,7 @@ impl Pattern {
             at: at(rim - place),
             height: (0.25 * width).min(5.0),
             turn_deg: flower.azimuth_deg(spoke),
-            text: (spoke + 1).to_string(),
+            text: number_of(spoke + 1),
         });
     }
 
@@ -255,6 +255,13 @@ impl Pattern {
         let height = (0.6 * (right - left) / text.chars().count().max(1) as f64).min(5.0);
         self.labels.push(Label { at: [0.5 * (left + right), bottom - 3.0 * height], height, turn_deg: 0.0, text });
     }
+}
+
+/// A number; one that reads as another upside down gets a dot.
+fn number_of(spoke: usize) -> String {
+    let text = spoke.to_string();
+    let turns = text.chars().all(|c| "0689".contains(c)) && text.contains(['6', '9']);
+    if turns { text + "." } else { text }
 }
 
 fn flower(design: &Design) -> Flower {

@@ -302,7 +302,7 @@ mod tests {
         // Near the rims, on both sides of the axes: y of a spoke points clockwise.
         for spoke in 0..5 {
             let azimuth = 72.0 * f64::from(spoke);
-            let (soft, stiff) = if spoke % 2 == 0 { (8.0, -8.0) } else { (-8.0, 8.0) };
+            let (soft, stiff) = if spoke % 2 == 0 { (25.0, -25.0) } else { (-25.0, 25.0) };
             assert_eq!(at(21.0, azimuth + soft), 1, "spoke {spoke}");
             assert_eq!(at(21.0, azimuth + stiff), 2, "spoke {spoke}");
             assert_eq!(at(21.0, azimuth + 36.0), VOID);
@@ -360,8 +360,9 @@ mod tests {
             };
             let volume = spokes as f64 * 20.0 * mean(&|i| profile.width[i]);
             let stiffness = spokes as f64 * 20.0 * mean(&|i| profile.width[i] * profile.modulus_mpa[i]);
-            // Eleven slices of 90 um are 1 % off one millimetre.
-            let (drawn, wanted) = (total.map(|t| t * voxel / 0.99), [volume, stiffness]);
+            // Eleven slices of 90 um are 1 % short of one millimetre, 133 columns 0.25 % short of the length.
+            let whole = 0.99 * if scope == Scope::Spoke { raster.columns as f64 * 0.15 / 20.0 } else { 1.0 };
+            let (drawn, wanted) = (total.map(|t| t * voxel / whole), [volume, stiffness]);
             assert!((drawn[0] / wanted[0] - 1.0).abs() < 0.01, "{drawn:?} {wanted:?}");
             assert!((drawn[1] / wanted[1] - 1.0).abs() < 0.002, "{drawn:?} {wanted:?}");
             if scope == Scope::Flower {

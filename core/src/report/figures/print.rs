@@ -66,7 +66,7 @@ fn overview(design: &Design, input: &FabricationInput, native: &Raster, coarse: 
     let scale = (WIDTH / wide).min(HIGHEST / high);
     let mut svg = Svg::new(WIDTH, HEADING + scale * high + 34.0);
     svg.text([0.0, 14.0], Anchor::Start, 12.5, INK, "whole slice");
-    place(&mut svg, &png, [0.0, HEADING], [scale * wide, scale * high]);
+    place(&mut svg, &png, [0.5 * (WIDTH - scale * wide), HEADING], [scale * wide, scale * high]);
     scale_bar(&mut svg, [1.0, HEADING + scale * high + 10.0], scale, 160.0);
     Some(svg)
 }
