@@ -1,5 +1,6 @@
 //! What keeps a design from being made.
 
+use super::assembly::AssemblyError;
 use super::voxel_surface::SurfaceError;
 use crate::error::Error;
 use crate::input::{FabricationKind, InputError};
@@ -62,6 +63,9 @@ pub enum FabricationError {
         /// Where, mm.
         y: f64,
     },
+    /// The parts of an assembly do not fit.
+    #[error("{0}")]
+    Assembly(#[from] AssemblyError),
     /// The phases' surfaces cannot be held in a file.
     #[error("{kind}: {error}")]
     Surface {
@@ -79,6 +83,7 @@ impl FabricationError {
         match self {
             Self::NotApplicable { .. } | Self::Unknown { .. } => "fabrication.write",
             Self::Surface { .. } => "fabrication.scope",
+            Self::Assembly(error) => error.key(),
             Self::OutlineCrosses { .. } => "fabrication.kerf_mm",
             Self::TooManyVoxels { .. } | Self::ImageTooLarge { .. } => "fabrication.printer",
         }

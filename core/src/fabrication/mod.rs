@@ -4,6 +4,7 @@
 //! asked for together and refuses what is too large before anything is written; [`fabricate`] writes them into the folder of
 //! a design, all or none, with [`record`] of what is there.
 
+pub mod assembly;
 mod error;
 mod gcvf;
 pub mod layout;
@@ -115,6 +116,7 @@ const MAKERS: &[&dyn Maker] = &[
     &print_stack::Gcvf,
     &pattern::DxfPattern,
     &pattern::SvgPattern,
+    &assembly::Assembly,
     &preview::Preview,
 ];
 

@@ -1,5 +1,6 @@
 //! What is written as a solid: a closed, oriented triangle surface, given piece by piece.
 
+use std::collections::{HashMap, HashSet};
 use std::io;
 
 use super::stl::Frame;
@@ -94,6 +95,30 @@ impl Mesh {
     #[must_use]
     pub fn corners(&self, triangle: [u32; 3]) -> [Point; 3] {
         triangle.map(|v| self.vertices[v as usize])
+    }
+
+    /// Whether every edge belongs to two triangles that turn alike, also after vertices that are equal in single precision
+    /// were welded.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        let mut welded: HashMap<[u32; 3], u32> = HashMap::new();
+        let singles = self.vertices.iter().map(|p| p.map(|c| (c as f32 + 0.0).to_bits()));
+        let numbers: Vec<u32> = singles
+            .map(|single| {
+                let next = welded.len() as u32;
+                *welded.entry(single).or_insert(next)
+            })
+            .collect();
+        let mut edges: HashSet<(u32, u32)> = HashSet::new();
+        for triangle in &self.triangles {
+            for k in 0..3 {
+                let [from, to] = [triangle[k], triangle[(k + 1) % 3]].map(|v| numbers[v as usize]);
+                if from == to || !edges.insert((from, to)) {
+                    return false;
+                }
+            }
+        }
+        edges.iter().all(|(from, to)| edges.contains(&(*to, *from)))
     }
 
     /// A prism with a convex base, given counter-clockwise seen from above, between two heights.
