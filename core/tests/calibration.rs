@@ -192,7 +192,7 @@ fn calibrated_designs_miss_their_target_less() {
                 -570.8, 89.7]";
     let high = "phases = [\"soft\", \"rigid\"]\n[[materials.custom]]\nname = \"soft\"\nmodulus_mpa = 1.0\npoisson = 0.3\n\
                 [[materials.custom]]\nname = \"rigid\"\nmodulus_mpa = 30.0\npoisson = 0.3";
-    let hemisphere = DESIGN.replace("phases = [", "phases = [");
+    let hemisphere = DESIGN.to_owned();
     let roof = DESIGN
         .replace("kind = \"hemi-ellipsoid\"", roof)
         .replace("count = 8", "count = 6")

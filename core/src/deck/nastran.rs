@@ -134,7 +134,7 @@ impl Deck for NastranMesh<'_> {
         for (i, (_, constants)) in self.materials.iter().enumerate() {
             let id = i + 1;
             sink.line(&format!("{:<8}{id:>8}{id:>8}", "PSOLID"))?;
-            let density = constants.density.map_or_else(String::new, |d| long(d));
+            let density = constants.density.map_or_else(String::new, long);
             sink.line(&format!(
                 "{:<8}{id:>16}{:>16}{:>16}{:>16}*",
                 "MAT1*",

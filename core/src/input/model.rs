@@ -182,6 +182,9 @@ pub struct VoxelsInput {
     pub rounding: Rounding,
 }
 
+/// A key of a material, and its value where the material has one.
+type Need = (&'static str, fn(&Material) -> Option<f64>);
+
 /// A kind of deck.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -231,7 +234,7 @@ impl DeckKind {
     }
 
     /// Keys of a material that the deck cannot do without.
-    fn needs(self) -> &'static [(&'static str, fn(&Material) -> Option<f64>)] {
+    fn needs(self) -> &'static [Need] {
         match self {
             Self::VoxelHeat | Self::GradedHeat => &[("conductivity_w_mk", |m| m.conductivity_w_mk)],
             Self::VoxelCurrent | Self::GradedCurrent => &[
