@@ -120,8 +120,9 @@ fn step(kind: u8, dice: &mut Dice<'_>, handles: &mut Handles) {
                 let mut input = ptr::null_mut();
                 let parse = if kind < 128 { voxelastica_input_parse_toml } else { voxelastica_input_parse_json };
                 let folder = b"/nonexistent";
-                let status =
-                    parse(data, length, data, length.min(3), folder.as_ptr().cast(), folder.len(), &raw mut input, e);
+                let (folder, most) = ((folder.as_ptr().cast(), folder.len()), length.min(3));
+                let (none, user) = (None, ptr::null_mut());
+                let status = parse(data, length, data, most, folder.0, folder.1, none, user, &raw mut input, e);
                 handles.keep(input);
                 status
             }

@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use voxelastica_core::input::FabricationKind;
 
 /// Target shape in, finite-element decks of a flat, modulus-graded flower out.
 #[derive(Debug, Parser)]
@@ -30,8 +32,12 @@ pub struct Arguments {
 pub enum Command {
     /// Design a flower: widths, modulus, voxels, decks and a report.
     Design(DesignOptions),
-    /// Let CalculiX morph a design and compare the result with the target.
+    /// Morph a design with every voxel resolved and compare the result with the target.
     Verify(VerifyOptions),
+    /// Make the files to print, cut and assemble a design.
+    Fabricate(FabricateOptions),
+    /// Let heat and current through a design's strip: fields, effective conductivities, pictures.
+    Conduct(Box<ConductOptions>),
     /// Test every layout of a small cell of two phases: moduli along x, y and z against their bounds.
     Micromechanics(MicromechanicsOptions),
     /// List the materials of the library.
@@ -50,7 +56,12 @@ pub struct DesignOptions {
     /// Folder to write into [default: out/NAME].
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
-    /// Do it even if there are more than 200 million voxels or the disk seems too small.
+    /// Correct the modulus with the finite elements inside, at most N times [default with this option: 4, without:
+    /// refine.iterations of the design file].
+    #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "4",
+          value_parser = clap::value_parser!(u8).range(0..=20))]
+    pub refine: Option<u8>,
+    /// Do it even if there are more than 200 million voxels or the disk or the memory seems too small.
     #[arg(long)]
     pub yes: bool,
 }
@@ -60,12 +71,15 @@ pub struct DesignOptions {
 pub struct VerifyOptions {
     /// Folder that `design` wrote.
     pub folder: PathBuf,
-    /// Which deck to solve.
-    #[arg(long, value_enum, default_value_t = ModelChoice::Graded)]
+    /// Which model to solve.
+    #[arg(long, value_enum, default_value_t = ModelChoice::Voxel)]
     pub model: ModelChoice,
-    /// Which solver to use.
-    #[arg(long, value_enum, default_value_t = SolverChoice::Ccx)]
+    /// Which solver to use: the one inside, or CalculiX on the deck in the folder.
+    #[arg(long, value_enum, default_value_t = SolverChoice::Embedded)]
     pub solver: SolverChoice,
+    /// Elements along a voxel's edge, for the solver inside.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=8))]
+    pub elements_per_voxel_edge: u8,
     /// The CalculiX program.
     #[arg(long, value_name = "PATH", default_value = "ccx")]
     pub ccx: PathBuf,
@@ -75,9 +89,151 @@ pub struct VerifyOptions {
     /// Exit with 6 if the largest error exceeds this share of the length, percent.
     #[arg(long, value_name = "PCT", value_parser = positive)]
     pub target_error: Option<f64>,
-    /// Keep the solver's files in this folder.
+    /// Keep CalculiX's files in this folder.
     #[arg(long, value_name = "DIR")]
     pub keep: Option<PathBuf>,
+    /// Do it even if it seems to need more memory than there is.
+    #[arg(long)]
+    pub yes: bool,
+}
+
+/// Options of `fabricate`.
+#[derive(Debug, Args)]
+pub struct FabricateOptions {
+    /// Folder that `design` wrote.
+    pub folder: PathBuf,
+    /// Make this kind only; may be repeated [default: fabrication.write of the design, or all that it can have].
+    #[arg(long, value_name = "KIND", value_delimiter = ',', value_parser = fabrication_kinds())]
+    pub only: Vec<FabricationKind>,
+    /// Do it even if there are very many voxels or the disk seems too small.
+    #[arg(long)]
+    pub yes: bool,
+}
+
+/// Options of `conduct`. What is not given is what the design's [conduction] table says.
+#[derive(Debug, Args)]
+pub struct ConductOptions {
+    /// Folder that `design` wrote.
+    pub folder: PathBuf,
+    /// What flows.
+    #[arg(long, value_enum, default_value_t = Flow::Both)]
+    pub flow: Flow,
+    /// The state in the long run, the way there, or both.
+    #[arg(long, value_enum, default_value_t = Regime::Both)]
+    pub regime: Regime,
+    /// Every voxel its phase, or the smooth strip with the designed mixture.
+    #[arg(long, value_enum, default_value_t = ConductModel::Voxel)]
+    pub model: ConductModel,
+    /// As printed, or at the end of the morph.
+    #[arg(long, value_enum, default_value_t = ConductShape::Flat)]
+    pub shape: ConductShape,
+    /// Temperature of the rim, K.
+    #[arg(long, value_name = "K")]
+    pub rim_temperature: Option<f64>,
+    /// Temperature of the rest at the start, K.
+    #[arg(long, value_name = "K")]
+    pub start_temperature: Option<f64>,
+    /// Current that enters at the rim, A.
+    #[arg(long, value_name = "A")]
+    pub current: Option<f64>,
+    /// How it enters.
+    #[arg(long, value_enum)]
+    pub electrode: Option<ElectrodeChoice>,
+    /// Times of temperature fields, s, separated by commas.
+    #[arg(long, value_name = "S,...", value_delimiter = ',')]
+    pub heat_times: Option<Vec<f64>>,
+    /// Times of potential fields, s, separated by commas.
+    #[arg(long, value_name = "S,...", value_delimiter = ',')]
+    pub current_times: Option<Vec<f64>>,
+    /// Measuring points on the mid-line as shares of the length from the rim, separated by commas.
+    #[arg(long, value_name = "SHARE,...", value_delimiter = ',')]
+    pub measure_at: Option<Vec<f64>>,
+    /// Share of the final temperature at the critical time.
+    #[arg(long, value_name = "SHARE")]
+    pub threshold: Option<f64>,
+    /// What that is a share of.
+    #[arg(long, value_enum)]
+    pub threshold_of: Option<ThresholdChoice>,
+    /// Share off the steady potential that counts as its plateau.
+    #[arg(long, value_name = "SHARE")]
+    pub plateau: Option<f64>,
+    /// Largest error of a time step as a share of the rise.
+    #[arg(long, value_name = "SHARE")]
+    pub time_tolerance: Option<f64>,
+    /// Also draw modulus against conductivity for mixtures of the phases in every pattern.
+    #[arg(long)]
+    pub ashby: bool,
+    /// Write no fields for ParaView.
+    #[arg(long)]
+    pub no_vtu: bool,
+    /// Folder to write into [default: the design's].
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    /// Write even if the disk seems too small.
+    #[arg(long)]
+    pub yes: bool,
+}
+
+/// What flows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Flow {
+    /// Heat.
+    Heat,
+    /// Current.
+    Current,
+    /// One after the other.
+    Both,
+}
+
+/// What of it is computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Regime {
+    /// The state in the long run.
+    Steady,
+    /// The way there.
+    Transient,
+    /// Both.
+    Both,
+}
+
+/// Strips that conduct.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ConductModel {
+    /// Every voxel its phase.
+    Voxel,
+    /// Smooth width, designed mixture.
+    Graded,
+    /// Both.
+    Both,
+}
+
+/// Shapes in which they conduct.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ConductShape {
+    /// As printed.
+    Flat,
+    /// At the end of the morph.
+    Morphed,
+    /// Both.
+    Both,
+}
+
+/// How current enters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ElectrodeChoice {
+    /// Through a contact of one potential.
+    Equipotential,
+    /// With one density over the cross-section.
+    Uniform,
+}
+
+/// What a threshold is a share of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ThresholdChoice {
+    /// The rise from the start.
+    Rise,
+    /// The absolute temperature.
+    Value,
 }
 
 /// Options of `micromechanics`.
@@ -151,8 +307,15 @@ pub enum ModelChoice {
 /// Solvers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum SolverChoice {
+    /// The finite elements inside.
+    Embedded,
     /// CalculiX.
     Ccx,
+}
+
+fn fabrication_kinds() -> impl TypedValueParser<Value = FabricationKind> {
+    PossibleValuesParser::new(FabricationKind::ALL.map(FabricationKind::name))
+        .try_map(|name| FabricationKind::from_name(&name).ok_or_else(|| format!("{name} is not known")))
 }
 
 fn positive(text: &str) -> Result<f64, String> {

@@ -7,6 +7,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use indicatif::{ProgressBar, ProgressStyle};
 use voxelastica_core::Error;
 
+/// Progress of writing.
+pub const WRITING: &str = "{msg} [{wide_bar}] {percent} % {eta}";
+
 /// The user's end of the command line.
 pub struct Console {
     quiet: bool,

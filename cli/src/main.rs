@@ -17,6 +17,8 @@ fn main() -> ExitCode {
     let result = match arguments.command {
         Command::Design(options) => commands::design::run(&options, &console),
         Command::Verify(options) => commands::verify::run(&options, &console),
+        Command::Fabricate(options) => commands::fabricate::run(&options, &console),
+        Command::Conduct(options) => commands::conduct::run(&options, &console),
         Command::Micromechanics(options) => commands::micromechanics::run(&options, &console),
         Command::Materials => commands::lists::materials(&console),
         Command::Targets(options) => commands::lists::targets(&options, &console),

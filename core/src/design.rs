@@ -93,10 +93,15 @@ impl Design {
 
         let outline = outline(input, &lattice, &body, limits)?;
         let rule = mixture_rule(input, &phases, lattice.layers, cancelled)?;
-        let scale_mpa = scale(input, &phases, rule.as_deref(), &lattice, &outline, contrast);
+        let scale_mpa =
+            scale(input, &phases, rule.as_deref(), &lattice, &outline, voxel_contrast(input, &outline, contrast));
         let targets: Vec<SliceTarget> = outline
             .iter()
-            .map(|o| SliceTarget { width_mm: o.width_mm, modulus_mpa: scale_mpa * o.ratio, half_width: o.half_width })
+            .map(|o| SliceTarget {
+                width_mm: o.width_mm,
+                modulus_mpa: scale_mpa * o.ratio * o.correction,
+                half_width: o.half_width,
+            })
             .collect();
         let filling = Filling {
             phases: &phases,
@@ -281,12 +286,18 @@ impl Design {
     }
 
     fn graded_stiffness(&self) -> StripStiffness {
+        self.graded_stiffness_times(|_| 1.0)
+    }
+
+    /// The stiffness of the smooth strip, multiplied by a factor of the share of the length.
+    pub(crate) fn graded_stiffness_times(&self, factor: impl Fn(f64) -> f64) -> StripStiffness {
         let third = self.input.strips.thickness_mm.powi(3) / 12.0;
         let last = 2 * (STATIONS - 1);
         let length = self.input.strips.length_mm;
         let section = |i: usize| {
-            let (width, modulus) = self.width_and_modulus(length * i as f64 / last as f64);
-            Section { stiffness: width * modulus * third, neutral_offset: 0.0 }
+            let share = i as f64 / last as f64;
+            let (width, modulus) = self.width_and_modulus(length * share);
+            Section { stiffness: factor(share) * width * modulus * third, neutral_offset: 0.0 }
         };
         StripStiffness::Smooth((0..=last).map(section).collect())
     }
@@ -338,10 +349,13 @@ impl Design {
         Ok(profile)
     }
 
-    /// The shape the voxelised strip takes, and how far it is from the target.
+    /// The shape the voxelised strip takes, and how far it is from the target. What a refinement found the mixture to lack
+    /// is taken off the sections' stiffness again.
     fn predict(&mut self) {
         let Some(guide) = self.guide.clone() else { return };
-        let stiffness = StripStiffness::Slices(self.slices.iter().map(|s| s.section).collect());
+        let section =
+            |s: &Slice| Section { stiffness: s.section.stiffness / correction(&self.input, s.s_mm), ..s.section };
+        let stiffness = StripStiffness::Slices(self.slices.iter().map(section).collect());
         match MorphPath::new(stiffness, guide, self.forces) {
             Ok(path) => {
                 self.predicted_error =
@@ -428,6 +442,8 @@ fn thrust(input: &DesignInput) -> (HubSupport, ThrustChoice) {
 struct Outline {
     width_mm: f64,
     ratio: f64,
+    /// Factor by which the voxels' modulus is raised because the mixture bends more softly than its mean modulus says.
+    correction: f64,
     half_width: usize,
 }
 
@@ -444,7 +460,8 @@ fn outline(input: &DesignInput, lattice: &Lattice, body: &Body, limits: Limits) 
         (0..lattice.slices)
             .map(|i| {
                 let (width_mm, ratio) = body.local(input, lattice.centre(i));
-                Outline { width_mm, ratio, half_width: lattice.half_width(width_mm, input.voxels.rounding) }
+                let correction = correction(input, lattice.centre(i));
+                Outline { width_mm, ratio, correction, half_width: lattice.half_width(width_mm, input.voxels.rounding) }
             })
             .collect()
     };
@@ -459,6 +476,20 @@ fn outline(input: &DesignInput, lattice: &Lattice, body: &Body, limits: Limits) 
         return Err(Error::lattice(lattice.size_mm, &error));
     }
     Ok(slices)
+}
+
+/// The factor of the voxels' modulus that a refinement found at arc length `s`.
+fn correction(input: &DesignInput, s: f64) -> f64 {
+    input.refine.as_ref().map_or(1.0, |refine| refine.factor(s / input.strips.length_mm))
+}
+
+/// Largest over smallest modulus that the voxels are to have.
+fn voxel_contrast(input: &DesignInput, outline: &[Outline], contrast: f64) -> f64 {
+    if input.refine.as_ref().is_none_or(|refine| refine.correction.is_empty()) {
+        return contrast;
+    }
+    let moduli = || outline.iter().map(|o| o.ratio * o.correction);
+    moduli().fold(f64::MIN, f64::max) / moduli().fold(f64::MAX, f64::min)
 }
 
 /// The largest modulus, MPa: the phases' default, reduced so that no slice of whole voxels needs more than it, or raised
@@ -478,7 +509,8 @@ fn scale(
         return uniform_modulus(phases, rigid, input.materials.intermediate_fraction);
     }
     let peak = phases.default_peak(contrast);
-    let needs = || outline.iter().map(|o| o.ratio * o.width_mm / (2.0 * o.half_width as f64 * lattice.size_mm));
+    let need = |o: &Outline| o.ratio * o.correction * o.width_mm / (2.0 * o.half_width as f64 * lattice.size_mm);
+    let needs = || outline.iter().map(need);
     let (most, least) = (needs().fold(1.0, f64::max), needs().fold(1.0 / contrast, f64::min));
     let (default, highest) = (peak / most, phases.stiffest() / most);
     (phases.softest() / least).clamp(default, highest.max(default))

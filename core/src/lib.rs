@@ -37,7 +37,7 @@
 //! ```
 //!
 //! The pipeline reads from top to bottom in [`design`]: [`target`] -> [`elastica`] -> [`materials`] and [`micromechanics`] ->
-//! [`voxel`]. From there [`deck`] writes finite-element decks, [`report`] the page and [`output`] a whole folder; [`solver`] runs
+//! [`voxel`]. From there [`deck`] writes finite-element decks, [`fabrication`] files to print, cut and assemble, [`report`] the page and [`output`] a whole folder; [`solver`] runs
 //! CalculiX and [`results`] compares what it returns with the target. [`input`] is the design file.
 //!
 //! **Guaranteed**: the same design gives the same bytes on the same machine and build; sizes from outside are limited before
@@ -48,10 +48,12 @@
 //! Units are mm, N, MPa, tonne, s, K; angles are radians here and degrees in files. The method is that of Kansara, Liu, He
 //! and Tan, J. Mech. Phys. Solids (2023); `docs/theory.md` derives it.
 
+pub mod conduction;
 pub mod deck;
 pub mod design;
 pub mod elastica;
 mod error;
+pub mod fabrication;
 pub mod fem;
 pub mod flower;
 pub mod input;
@@ -63,6 +65,7 @@ mod numerics;
 pub mod output;
 pub mod profile;
 pub mod progress;
+pub mod refine;
 pub mod report;
 pub mod results;
 pub mod solver;

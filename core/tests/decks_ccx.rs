@@ -10,6 +10,7 @@ use common::{design, provenance};
 use voxelastica_core::input::{DeckKind, DeckSolver};
 use voxelastica_core::output::Summary;
 use voxelastica_core::results::ccx_dat::{NodePrint, Quantity, parse};
+use voxelastica_core::results::{EmbeddedOptions, verify_embedded};
 use voxelastica_core::{Design, deck, progress};
 
 /// A hemisphere of eight spokes: `hub` and the graded mesh are filled in.
@@ -143,6 +144,30 @@ fn the_voxelised_hemisphere_stays_near_its_target() {
     let [material, nearest] = run.errors(&design);
     println!("voxel hemisphere: {:.3} % at equal s, {:.3} % to the curve", 100.0 * material, 100.0 * nearest);
     assert!(material < 0.015, "{material}");
+}
+
+#[test]
+#[ignore = "needs ccx: scripts/test runs it where there is one"]
+fn the_finite_elements_inside_agree_with_calculix_on_the_same_mesh() {
+    for (pattern, hub) in [("random", "free"), ("through-thickness", "free"), ("centred", "held")] {
+        let text = format!(
+            "[target]\nkind = \"hemi-ellipsoid\"\n[strips]\ncount = 8\nlength_mm = 30.0\nhub_radius_mm = 3.0\n\
+             thickness_mm = 2.0\n[thrust]\nhub = \"{hub}\"\n[materials]\nphases = [\"FLX9070\", \"FLX9095\"]\n[voxels]\n\
+             size_mm = 1.0\npattern = \"{pattern}\"\nmatch = \"stiffness\""
+        );
+        let design = design(&text);
+        let Some(run) = run(&design, DeckKind::VoxelSolid) else { return };
+        let inside = verify_embedded(&design, &EmbeddedOptions::default(), &progress::unseen).unwrap();
+        let pairs = run.midline().into_iter().zip(inside.verification.midline_mm);
+        let off = pairs.map(|(a, b)| (a[1] - b[1]).hypot(a[2] - b[2])).fold(0.0, f64::max) / 30.0;
+        let rim = inside.solution.reactions.rim;
+        let [force] = run.last("RP-RIM", Quantity::Force)[..] else { panic!("one reference node") };
+        let [moment] = run.last("RP-RIM-ROT", Quantity::Force)[..] else { panic!("one reference node") };
+        println!("{pattern}, {hub}: {:.4} % of L apart; H {} {}", 100.0 * off, force[0], rim.horizontal);
+        assert!(off < 0.0005, "{pattern}, {hub}: {off}");
+        assert!((rim.moment - moment[1]).abs() < 0.005 * rim.moment.abs(), "{} {}", rim.moment, moment[1]);
+        assert!((rim.horizontal - force[0]).abs() < 0.005 * rim.horizontal.abs().max(0.01 * rim.moment.abs()));
+    }
 }
 
 /// The table of all shapes, for the developer: `--ignored --nocapture`, ten minutes.

@@ -1,6 +1,7 @@
 //! What the C ABI costs: the same design by Rust and by C functions in turn, so that both see the same machine. Prints
 //! the medians in seconds as JSON; `scripts/benchmarks` shows them.
 
+use std::ffi::c_void;
 use std::path::Path;
 use std::ptr;
 use std::time::Instant;
@@ -23,11 +24,57 @@ fn by_c() {
     let (text, length, name) = (TOML.as_ptr().cast(), TOML.len(), b"hemisphere".as_ptr().cast());
     // SAFETY: texts are as long as they say, outputs are writable.
     unsafe {
-        voxelastica_input_parse_toml(text, length, name, 10, ptr::null(), 0, &raw mut input, ptr::null_mut());
+        voxelastica_input_parse_toml(
+            text,
+            length,
+            name,
+            10,
+            ptr::null(),
+            0,
+            None,
+            ptr::null_mut(),
+            &raw mut input,
+            ptr::null_mut(),
+        );
         voxelastica_design_compute(input, false, None, ptr::null_mut(), &raw mut design, ptr::null_mut());
     }
     voxelastica_input_free(input);
     voxelastica_design_free(design);
+}
+
+unsafe extern "C" fn note(user: *mut c_void, _done: u64, _total: u64) -> bool {
+    // SAFETY: `cancelled` passes an instant.
+    unsafe { (*user.cast::<Option<Instant>>()).get_or_insert_with(Instant::now) };
+    false
+}
+
+/// Seconds from the wish to cancel until the call returns, for a design of eight million voxels.
+fn cancelled() -> f64 {
+    let text = TOML.replace("size_mm = 0.5", "size_mm = 0.1").replace("thickness_mm = 2.0", "thickness_mm = 20.0");
+    let (mut input, mut design) = (ptr::null_mut(), ptr::null_mut());
+    let mut wish: Option<Instant> = None;
+    let (nobody, none) = (ptr::null_mut(), ptr::null_mut());
+    // SAFETY: texts are as long as they say, outputs are writable, the callback gets what it expects.
+    unsafe {
+        let text = (text.as_ptr().cast(), text.len());
+        voxelastica_input_parse_toml(
+            text.0,
+            text.1,
+            ptr::null(),
+            0,
+            ptr::null(),
+            0,
+            None,
+            nobody,
+            &raw mut input,
+            none,
+        );
+        voxelastica_design_compute(input, true, Some(note), (&raw mut wish).cast(), &raw mut design, none);
+    }
+    let late = wish.map_or(0.0, |wish| wish.elapsed().as_secs_f64());
+    voxelastica_input_free(input);
+    voxelastica_design_free(design);
+    late
 }
 
 fn seconds(work: fn()) -> f64 {
@@ -65,5 +112,6 @@ fn main() {
     let rust = median(pairs.iter().map(|p| p.0).collect());
     let c = median(pairs.iter().map(|p| p.1).collect());
     let ratio = median(pairs.iter().map(|p| p.1 / p.0).collect());
-    println!("{{\"rust\": {rust:.9}, \"c\": {c:.9}, \"ratio\": {ratio:.6}}}");
+    let late = median((0..9).map(|_| cancelled()).collect());
+    println!("{{\"rust\": {rust:.9}, \"c\": {c:.9}, \"ratio\": {ratio:.6}, \"cancel\": {late:.6}}}");
 }

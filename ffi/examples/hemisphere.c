@@ -23,7 +23,7 @@ int main(void) {
   voxelastica_error *error = NULL;
   voxelastica_array_f64 s, width;
   voxelastica_status status =
-      voxelastica_input_parse_toml(TOML, strlen(TOML), "hemisphere", 10, NULL, 0, &input, &error);
+      voxelastica_input_parse_toml(TOML, strlen(TOML), "hemisphere", 10, NULL, 0, NULL, NULL, &input, &error);
   if (status == VOXELASTICA_STATUS_OK) {
     status = voxelastica_design_compute(input, false, NULL, NULL, &design, &error);
   }

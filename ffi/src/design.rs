@@ -30,7 +30,7 @@ impl Handle for DesignObject {
 }
 
 impl DesignObject {
-    fn new(design: Design) -> Self {
+    pub(crate) fn new(design: Design) -> Self {
         let warnings = design.warnings().iter().map(|w| c_text(w)).collect();
         Self { design: Arc::new(design), outline: OnceLock::new(), warnings }
     }

@@ -1,6 +1,6 @@
 //! `voxelastica_input`: a design as its author states it, read and checked.
 
-use std::ffi::c_char;
+use std::ffi::{c_char, c_void};
 use std::path::Path;
 
 use voxelastica_core::DesignInput;
@@ -11,6 +11,7 @@ use crate::arguments::{Out, path, text};
 use crate::boundary::{enter, value_or};
 use crate::error::ErrorObject;
 use crate::failure::Failure;
+use crate::progress::{ProgressCallback, Watch, with_callback};
 use crate::registry::{Handle, find, keep, release};
 use crate::status::Status;
 use crate::text::Text;
@@ -25,22 +26,32 @@ impl Handle for Input {
 /// Name of a design that states none and comes from no file.
 const DEFAULT_NAME: &str = "design";
 
-/// Reads a design from a text.
+/// Reads a design from a text while being watched.
 ///
 /// # Errors
-/// What is wrong with the text, naming `shown`, line, key and value.
-pub fn parse(text: &str, format: Format, shown: &str, folder: &Path) -> Result<DesignInput, Failure> {
+/// What is wrong with the text, naming `shown`, line, key and value; cancellation.
+pub fn parse(text: &str, format: Format, shown: &str, folder: &Path, watch: &Watch) -> Result<DesignInput, Failure> {
     let stem = Path::new(shown).file_stem().map(|s| s.to_string_lossy().into_owned());
     let name = stem.filter(|s| !s.is_empty()).unwrap_or_else(|| DEFAULT_NAME.to_owned());
     let shown = if shown.is_empty() { DEFAULT_NAME } else { shown };
-    Ok(DesignInput::from_text(text, format, shown, &name, folder)?)
+    Ok(DesignInput::from_text_unless(text, format, shown, &name, folder, &|| watch.is_cancelled())?)
+}
+
+/// Reads a design file while being watched.
+///
+/// # Errors
+/// What is wrong with the file; cancellation.
+pub fn read(file: &Path, watch: &Watch) -> Result<DesignInput, Failure> {
+    Ok(DesignInput::read_unless(file, &|| watch.is_cancelled())?)
 }
 
 /// Reads a design from TOML text. `file` names it in errors, and its stem names a design that has no name (may be empty);
-/// relative paths are relative to `folder` (empty: the working folder). Free it with `voxelastica_input_free`.
+/// relative paths are relative to `folder` (empty: the working folder). `progress` may be null; a large mesh takes seconds.
+/// Free the input with `voxelastica_input_free`.
 ///
 /// # Safety
-/// Every pointer is null or points to as many bytes as its length says; `input` and `error` are null or writable.
+/// Every pointer is null or points to as many bytes as its length says; `progress` may be called with `user` on this
+/// thread during the call; `input` and `error` are null or writable.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn voxelastica_input_parse_toml(
     toml: *const c_char,
@@ -49,6 +60,8 @@ pub unsafe extern "C" fn voxelastica_input_parse_toml(
     file_length: usize,
     folder: *const c_char,
     folder_length: usize,
+    progress: ProgressCallback,
+    user: *mut c_void,
     input: *mut *mut Input,
     error: *mut *mut ErrorObject,
 ) -> Status {
@@ -58,7 +71,8 @@ pub unsafe extern "C" fn voxelastica_input_parse_toml(
             let toml = text("toml", toml, toml_length)?;
             let (file, folder) = (text("file", file, file_length)?, path("folder", folder, folder_length)?);
             let input = Out::new("input", input)?;
-            input.set(keep(Input(parse(toml, Format::Toml, file, &folder)?)));
+            let work = |watch: &Watch| parse(toml, Format::Toml, file, &folder, watch);
+            input.set(keep(Input(with_callback(progress, user, work)?)));
             Ok(())
         })
     }
@@ -76,6 +90,8 @@ pub unsafe extern "C" fn voxelastica_input_parse_json(
     file_length: usize,
     folder: *const c_char,
     folder_length: usize,
+    progress: ProgressCallback,
+    user: *mut c_void,
     input: *mut *mut Input,
     error: *mut *mut ErrorObject,
 ) -> Status {
@@ -85,14 +101,15 @@ pub unsafe extern "C" fn voxelastica_input_parse_json(
             let json = text("json", json, json_length)?;
             let (file, folder) = (text("file", file, file_length)?, path("folder", folder, folder_length)?);
             let input = Out::new("input", input)?;
-            input.set(keep(Input(parse(json, Format::Json, file, &folder)?)));
+            let work = |watch: &Watch| parse(json, Format::Json, file, &folder, watch);
+            input.set(keep(Input(with_callback(progress, user, work)?)));
             Ok(())
         })
     }
 }
 
-/// Reads a design file (`.json` as JSON, anything else as TOML) and the files it names. Free the input with
-/// `voxelastica_input_free`.
+/// Reads a design file (`.json` as JSON, anything else as TOML) and the files it names. `progress` may be null. Free the
+/// input with `voxelastica_input_free`.
 ///
 /// # Safety
 /// As for `voxelastica_input_parse_toml`.
@@ -100,6 +117,8 @@ pub unsafe extern "C" fn voxelastica_input_parse_json(
 pub unsafe extern "C" fn voxelastica_input_read(
     file: *const c_char,
     file_length: usize,
+    progress: ProgressCallback,
+    user: *mut c_void,
     input: *mut *mut Input,
     error: *mut *mut ErrorObject,
 ) -> Status {
@@ -108,7 +127,7 @@ pub unsafe extern "C" fn voxelastica_input_read(
         enter(error, || {
             let file = path("file", file, file_length)?;
             let input = Out::new("input", input)?;
-            input.set(keep(Input(DesignInput::read(&file)?)));
+            input.set(keep(Input(with_callback(progress, user, |watch: &Watch| read(&file, watch))?)));
             Ok(())
         })
     }

@@ -18,8 +18,10 @@
 mod arguments;
 pub mod array;
 pub mod boundary;
+pub mod conduct;
 pub mod design;
 pub mod error;
+pub mod fabricate;
 pub mod failure;
 pub mod flower;
 pub mod input;
@@ -32,4 +34,5 @@ pub mod progress;
 mod registry;
 pub mod status;
 pub mod text;
+pub mod verify;
 pub mod voxels;

@@ -226,7 +226,7 @@ pub extern "C" fn voxelastica_abi_version() -> u32 {
 }
 
 /// Version of the interface that this header describes.
-pub const ABI_VERSION: u32 = 1;
+pub const ABI_VERSION: u32 = 2;
 
 /// Number of objects that callers hold at present: to find leaks.
 #[unsafe(no_mangle)]

@@ -35,8 +35,10 @@ pub enum Output {
     Report = 32,
     /// `design.json`.
     Design = 64,
+    /// The files to make the thing that the design asks for (`fabrication.write`).
+    Fabrication = 128,
     /// All of them.
-    All = 127,
+    All = 255,
 }
 
 /// The kinds behind the bits.

@@ -47,6 +47,12 @@ impl Watch {
         !self.is_cancelled()
     }
 
+    /// What work that counts in shares of the whole tells, in thousandths.
+    pub fn shares(&self) -> impl Fn(f64) -> bool + Sync + '_ {
+        self.set_total(1000);
+        |share| self.report((1000.0 * share.clamp(0.0, 1.0)) as u64)
+    }
+
     /// How much is done, and how much there is to do.
     #[must_use]
     pub fn state(&self) -> (u64, u64) {

@@ -7,8 +7,10 @@ use std::collections::BTreeSet;
 use std::ffi::c_char;
 use std::ptr;
 
+use voxelastica::conduct::*;
 use voxelastica::design::*;
 use voxelastica::error::*;
+use voxelastica::fabricate::*;
 use voxelastica::flower::*;
 use voxelastica::input::*;
 use voxelastica::lists::*;
@@ -18,6 +20,7 @@ use voxelastica::path::*;
 use voxelastica::profile::*;
 use voxelastica::status::Status;
 use voxelastica::text::*;
+use voxelastica::verify::*;
 use voxelastica::voxels::*;
 
 /// How a call is spoilt.
@@ -63,10 +66,10 @@ const CALLS: &[(&str, Call)] = calls! {
     voxelastica_text_length(s) { assert_eq!(voxelastica_text_length(handle(s)), 0); None };
     voxelastica_text_free(s) freed(s, voxelastica_text_free(handle(s)));
     voxelastica_input_parse_toml(s) Some(voxelastica_input_parse_toml(
-        s.text.0, s.text.1, s.text.0, s.text.1, s.text.0, s.text.1, s.out.cast(), s.error));
+        s.text.0, s.text.1, s.text.0, s.text.1, s.text.0, s.text.1, None, ptr::null_mut(), s.out.cast(), s.error));
     voxelastica_input_parse_json(s) Some(voxelastica_input_parse_json(
-        s.text.0, s.text.1, s.text.0, s.text.1, s.text.0, s.text.1, s.out.cast(), s.error));
-    voxelastica_input_read(s) Some(voxelastica_input_read(s.text.0, s.text.1, s.out.cast(), s.error));
+        s.text.0, s.text.1, s.text.0, s.text.1, s.text.0, s.text.1, None, ptr::null_mut(), s.out.cast(), s.error));
+    voxelastica_input_read(s) Some(voxelastica_input_read(s.text.0, s.text.1, None, ptr::null_mut(), s.out.cast(), s.error));
     voxelastica_input_validate(s) Some(voxelastica_input_validate(handle(s), s.error));
     voxelastica_input_json(s) Some(voxelastica_input_json(handle(s), s.out.cast(), s.error));
     voxelastica_input_hash(s) Some(voxelastica_input_hash(handle(s), s.out.cast(), s.error));
@@ -92,7 +95,16 @@ const CALLS: &[(&str, Call)] = calls! {
     voxelastica_design_hub(s) Some(voxelastica_design_hub(
         handle(s), 0, 0.5, s.buffer.0.cast(), s.buffer.1, s.error));
     voxelastica_design_write(s) Some(voxelastica_design_write(
-        handle(s), s.text.0, s.text.1, 127, false, None, ptr::null_mut(), s.out.cast(), s.error));
+        handle(s), s.text.0, s.text.1, 255, false, None, ptr::null_mut(), s.out.cast(), s.error));
+    voxelastica_design_verify(s) Some(voxelastica_design_verify(
+        handle(s), 0, None, ptr::null_mut(), s.out.cast(), s.error));
+    voxelastica_design_refine(s) Some(voxelastica_design_refine(
+        handle(s), 1, false, None, ptr::null_mut(), s.out.cast(), s.error));
+    voxelastica_design_input(s) Some(voxelastica_design_input(handle(s), s.out.cast(), s.error));
+    voxelastica_design_conduct(s) Some(voxelastica_design_conduct(
+        handle(s), 0, 0, 0, 0, None, ptr::null_mut(), s.out.cast(), s.error));
+    voxelastica_design_fabricate(s) Some(voxelastica_design_fabricate(
+        handle(s), s.text.0, s.text.1, 0, false, None, ptr::null_mut(), s.out.cast(), s.error));
     voxelastica_design_free(s) freed(s, voxelastica_design_free(handle(s)));
     voxelastica_mesh_new(s) Some(voxelastica_mesh_new(handle(s), 0, 0.5, 0, 4, 4, s.out.cast(), s.error));
     voxelastica_mesh_positions(s) Some(voxelastica_mesh_positions(handle(s), s.out.cast(), s.error));

@@ -95,7 +95,7 @@ def test_every_structure_is_laid_out_as_in_the_header() -> None:
 
 
 def test_constants_are_those_of_the_header() -> None:
-    from voxelastica import OUTPUTS, VoxelasticaError, _library
+    from voxelastica import FABRICATION, OUTPUTS, VoxelasticaError, _library
 
     def constant(name: str) -> int:
         return int(re.search(rf"VOXELASTICA_{name}(?: =)? (\d+)", CODE)[1])
@@ -104,6 +104,8 @@ def test_constants_are_those_of_the_header() -> None:
     for name, bit in OUTPUTS.items():
         assert constant(f"OUTPUT_{name.upper()}") == bit
     assert constant("OUTPUT_ALL") == sum(OUTPUTS.values())
+    for name, bit in FABRICATION.items():
+        assert constant("FABRICATION_" + {"3mf": "THREE_MF"}.get(name, name.upper())) == bit
     codes = dict(re.findall(r"VOXELASTICA_STATUS_(\w+) = (\d+)", CODE))
     assert codes.pop("OK") == "0"
     assert {name: int(code) for name, code in codes.items()} == {

@@ -3,24 +3,29 @@
 use std::path::PathBuf;
 
 use voxelastica_core::input::TargetInput;
-use voxelastica_core::output::write::{WriteOptions, Written, estimated_bytes, write_design};
+use voxelastica_core::output::write::{OutputKind, WriteOptions, Written, write_outputs};
+use voxelastica_core::refine::refine;
+use voxelastica_core::results::EmbeddedOptions;
 use voxelastica_core::{Design, DesignInput, Error, Limits};
 
+use super::figures;
 use crate::args::DesignOptions;
-use crate::console::Console;
+use crate::console::{Console, WRITING};
 
 /// Reads, computes and writes a design.
 pub fn run(options: &DesignOptions, console: &Console) -> Result<u8, Error> {
-    let input = DesignInput::read(&options.file)?;
-    let design = Design::compute(&input, Limits { allow_large: options.yes })
-        .map_err(|error| error.in_file(&options.file.display().to_string()))?;
+    let input = DesignInput::read_unless(&options.file, &|| console.is_cancelled())?;
+    let design =
+        compute(&input, options, console).map_err(|error| error.in_file(&options.file.display().to_string()))?;
     let folder = options.output.clone().unwrap_or_else(|| PathBuf::from("out").join(&input.name));
-    let bar = console.bar(estimated_bytes(&design), "{msg} [{wide_bar}] {bytes}/{total_bytes} {eta}", "writing");
-    let progress = |bytes: u64| {
-        bar.set_position(bytes);
+    let bar = console.bar(1, WRITING, "writing");
+    let progress = |work: u64| {
+        bar.set_position(work);
         !console.is_cancelled()
     };
-    let written = write_design(&design, &folder, WriteOptions { allow_large: options.yes }, &progress);
+    let allowed = WriteOptions { allow_large: options.yes };
+    let total = |work: u64| bar.set_length(work);
+    let written = write_outputs(&design, &folder, &OutputKind::ALL, allowed, &total, &progress);
     bar.finish_and_clear();
     let written = written?;
     report(&design, &written, console);
@@ -32,6 +37,29 @@ pub fn run(options: &DesignOptions, console: &Console) -> Result<u8, Error> {
         console.detail(format!("          {file}"));
     }
     Ok(0)
+}
+
+/// Computes a design, refined where that was asked for and has not been done yet.
+fn compute(input: &DesignInput, options: &DesignOptions, console: &Console) -> Result<Design, Error> {
+    let limits = Limits { allow_large: options.yes };
+    let recorded = input.refine.as_ref();
+    let wanted = recorded.filter(|refine| refine.correction.is_empty()).map_or(0, |refine| refine.iterations);
+    let iterations = options.refine.map_or(wanted, usize::from);
+    if iterations == 0 {
+        return Design::compute_unless(input, limits, &|| console.is_cancelled());
+    }
+    let mut how = EmbeddedOptions::default();
+    if options.yes {
+        how.morph.memory_limit = Some(u64::MAX);
+    }
+    let bar = console.bar(1000, "{msg} [{wide_bar}] {percent} % {elapsed}", "refining");
+    let progress = |share: f64| {
+        bar.set_position((1000.0 * share) as u64);
+        !console.is_cancelled()
+    };
+    let refined = refine(input, limits, iterations, &how, &progress);
+    bar.finish_and_clear();
+    refined.map(|refined| refined.design)
 }
 
 fn report(design: &Design, written: &Written, console: &Console) {
@@ -76,20 +104,15 @@ fn report(design: &Design, written: &Written, console: &Console) {
     }
     let voxels: Vec<String> = summary.voxels.iter().map(|(name, count)| format!("{count} {name}")).collect();
     console.say(format!("voxels    {} a strip: {}", summary.voxels_per_spoke, voxels.join(", ")));
+    if let Some(refined) = &summary.refinement {
+        console.say(format!(
+            "refined   {} % of the length off the target instead of {} %, by {} finite-element solutions",
+            figures(refined.error_after_percent),
+            figures(refined.error_before_percent),
+            refined.solutions
+        ));
+    }
     if let Some(error) = summary.predicted_error_percent {
         console.say(format!("predicted {} % of the length off the target", figures(error)));
-    }
-}
-
-/// A number with four significant digits.
-fn figures(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return "0".to_owned();
-    }
-    let magnitude = value.abs().log10().floor() as i32;
-    if (-4..6).contains(&magnitude) {
-        format!("{value:.*}", usize::try_from(3 - magnitude).unwrap_or(0))
-    } else {
-        format!("{value:.3e}")
     }
 }

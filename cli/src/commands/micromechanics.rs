@@ -151,6 +151,7 @@ fn phase(text: &str, role: &str) -> Result<Material, InputError> {
         density_kg_m3: None,
         conductivity_w_mk: None,
         specific_heat_j_kgk: None,
+        relative_permittivity: None,
         electrical_conductivity_s_m: None,
         max_strain: None,
     })

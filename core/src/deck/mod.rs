@@ -14,7 +14,7 @@ mod graded_solid;
 mod keywords;
 mod layout;
 mod nastran;
-mod number;
+pub(crate) mod number;
 mod schedule;
 mod shell;
 mod sink;
@@ -28,7 +28,7 @@ use std::io::{self, Write};
 use crate::design::Design;
 use crate::input::model::{DeckKind, DeckSolver};
 use crate::output::Provenance;
-use crate::progress::Progress;
+use crate::progress::{Cancelled, Progress, never};
 use conduction::{Carrier, Conduction};
 use sink::Sink;
 
@@ -79,21 +79,39 @@ pub enum DeckError {
 /// The decks that a design asks for and that make sense for it: shells for ABAQUS only, flowers for domes only.
 #[must_use]
 pub fn plan(design: &Design) -> Vec<DeckPlan> {
+    // Counting fails only where it is cancelled.
+    plan_unless(design, &never).unwrap_or_default()
+}
+
+/// As [`plan`], but gives up once `cancelled` says so: sampling the sizes of millions of elements takes a while.
+///
+/// # Errors
+/// [`DeckError::Cancelled`].
+pub fn plan_unless(design: &Design, cancelled: Cancelled<'_>) -> Result<Vec<DeckPlan>, DeckError> {
+    offered(design).into_iter().map(|(kind, solver)| plan_one(design, kind, solver, cancelled)).collect()
+}
+
+/// Kinds and solvers of the decks that a design asks for and that make sense for it, each once.
+pub(crate) fn offered(design: &Design) -> Vec<(DeckKind, DeckSolver)> {
     let decks = &design.input().decks;
-    let mut plans: Vec<DeckPlan> = Vec::new();
+    let mut found: Vec<(DeckKind, DeckSolver)> = Vec::new();
     for solver in &decks.solvers {
         for kind in &decks.write {
-            let known = plans.iter().any(|p| p.kind == *kind && p.solver == *solver);
-            if !known && let Some(plan) = plan_one(design, *kind, *solver) {
-                plans.push(plan);
+            let pair = (*kind, *solver);
+            if !found.contains(&pair) && prepare(design, *kind, *solver).is_ok() {
+                found.push(pair);
             }
         }
     }
-    plans
+    found
 }
 
-fn plan_one(design: &Design, kind: DeckKind, solver: DeckSolver) -> Option<DeckPlan> {
-    let deck = prepare(design, kind, solver).ok()?;
+fn plan_one(
+    design: &Design,
+    kind: DeckKind,
+    solver: DeckSolver,
+    cancelled: Cancelled<'_>,
+) -> Result<DeckPlan, DeckError> {
     let input = design.input();
     // A hash has one length, so a stand-in gives the size.
     let provenance = Provenance {
@@ -101,9 +119,13 @@ fn plan_one(design: &Design, kind: DeckKind, solver: DeckSolver) -> Option<DeckP
         seed: input.voxels.seed,
         design_sha256: "0".repeat(64),
     };
-    let mut sink = Sink::counting();
-    deck.write(&provenance, &mut sink).ok()?;
-    Some(DeckPlan { kind, solver, nodes: deck.nodes(), elements: deck.elements(), bytes: sink.written() })
+    let mut plan = DeckPlan { kind, solver, nodes: 0, elements: 0, bytes: 0 };
+    let deck =
+        prepare(design, kind, solver).map_err(|reason| DeckError::NotOffered { path: plan.relative_path(), reason })?;
+    let mut sink = Sink::counting(cancelled);
+    deck.write(&provenance, &mut sink)?;
+    (plan.nodes, plan.elements, plan.bytes) = (deck.nodes(), deck.elements(), sink.written());
+    Ok(plan)
 }
 
 /// Writes a deck, streaming. `progress` is told the bytes written so far.

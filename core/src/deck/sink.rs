@@ -4,7 +4,7 @@ use std::io::Write;
 use std::ops::Range;
 
 use super::DeckError;
-use crate::progress::Progress;
+use crate::progress::{Cancelled, Progress};
 
 /// Text is handed on in pieces of this size, bytes.
 const FLUSH: usize = 1 << 20;
@@ -17,7 +17,7 @@ const SAMPLED_ROWS: usize = 64;
 
 enum Target<'a> {
     Writer { out: &'a mut dyn Write, progress: Progress<'a> },
-    Counter,
+    Counter { cancelled: Cancelled<'a> },
 }
 
 /// Receives a deck's text. Only ASCII lines of at most 256 characters are legal in ABAQUS; the writers see to that.
@@ -46,8 +46,8 @@ impl<'a> Sink<'a> {
     }
 
     /// A sink that only counts bytes, and estimates those of long blocks from samples.
-    pub(crate) fn counting() -> Self {
-        Self { target: Target::Counter, buffer: Vec::new(), written: 0 }
+    pub(crate) fn counting(cancelled: Cancelled<'a>) -> Self {
+        Self { target: Target::Counter { cancelled }, buffer: Vec::new(), written: 0 }
     }
 
     /// Bytes so far.
@@ -81,8 +81,8 @@ impl<'a> Sink<'a> {
 
     /// A long block. Pieces are rendered in parallel while the previous batch is written, so memory stays bounded.
     pub(crate) fn rows(&mut self, block: &dyn Rows) -> Result<(), DeckError> {
-        if matches!(self.target, Target::Counter) {
-            self.written += estimate(block);
+        if let Target::Counter { cancelled } = self.target {
+            self.written += estimate(block, cancelled)?;
             return Ok(());
         }
         self.flush()?;
@@ -112,7 +112,7 @@ impl<'a> Sink<'a> {
         self.flush()?;
         match self.target {
             Target::Writer { out, .. } => Ok(out.flush()?),
-            Target::Counter => Ok(()),
+            Target::Counter { .. } => Ok(()),
         }
     }
 
@@ -133,7 +133,13 @@ impl<'a> Sink<'a> {
                 }
                 if progress(self.written) { Ok(()) } else { Err(DeckError::Cancelled) }
             }
-            Target::Counter => Ok(()),
+            Target::Counter { cancelled } => {
+                if cancelled() {
+                    Err(DeckError::Cancelled)
+                } else {
+                    Ok(())
+                }
+            }
         }
     }
 }
@@ -155,7 +161,7 @@ fn pieces(block: &dyn Rows) -> impl Iterator<Item = Range<usize>> {
 }
 
 /// Size of a block, bytes, from rows of the middle group of evenly spread strata.
-fn estimate(block: &dyn Rows) -> u64 {
+fn estimate(block: &dyn Rows, cancelled: Cancelled<'_>) -> Result<u64, DeckError> {
     let group = block.group().max(1);
     let groups = block.rows() / group;
     let stride = (group / SAMPLED_ROWS).max(1);
@@ -165,6 +171,9 @@ fn estimate(block: &dyn Rows) -> u64 {
         let (from, to) = (groups * stratum / SAMPLES, groups * (stratum + 1) / SAMPLES);
         if from == to {
             continue;
+        }
+        if cancelled() {
+            return Err(DeckError::Cancelled);
         }
         let middle = usize::midpoint(from, to);
         let (mut sampled, mut weight) = (0, 0);
@@ -177,7 +186,7 @@ fn estimate(block: &dyn Rows) -> u64 {
         let all: usize = (from * group..to * group).map(|r| block.weight(r)).sum();
         bytes += sampled as f64 * all as f64 / weight.max(1) as f64;
     }
-    bytes.ceil() as u64
+    Ok(bytes.ceil() as u64)
 }
 
 #[cfg(test)]
@@ -220,7 +229,7 @@ mod tests {
         assert_eq!(sink.written(), expected.len() as u64);
         sink.finish().unwrap();
         assert!(out == expected);
-        let mut counter = Sink::counting();
+        let mut counter = Sink::counting(&crate::progress::never);
         fill(&mut counter);
         assert!((counter.written() as f64 / expected.len() as f64 - 1.0).abs() < 0.02);
     }

@@ -17,7 +17,7 @@ impl Design {
                 crate::modulus_field::TARGET_ERROR_PERCENT
             ));
         }
-        if !self.input.decks.write.is_empty() && crate::deck::plan(self).is_empty() {
+        if !self.input.decks.write.is_empty() && crate::deck::offered(self).is_empty() {
             warnings.push(
                 "no deck is written: shell decks are for ABAQUS and for domes only (see decks.write and decks.solvers)"
                     .to_owned(),

@@ -35,6 +35,8 @@ pub struct Factorisation {
     memory: MemBuffer,
     pivoting: Option<Pivoting>,
     negative: usize,
+    /// There are factors, and they are those of a definite tangent.
+    definite: bool,
 }
 
 /// What pivoted factors have besides.
@@ -74,7 +76,7 @@ impl Factorisation {
         let scratch = symbolic
             .factorize_numeric_ldlt_scratch::<f64>(parallel(), Spec::default())
             .or(symbolic.factorize_numeric_intranode_lblt_scratch::<f64>(parallel(), Spec::default()))
-            .or(symbolic.solve_in_place_scratch::<f64>(1, parallel()));
+            .or(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
         let needed = 8 * symbolic.len_val() as u64 + scratch.unaligned_bytes_required() as u64;
         let refused = || FemError::Memory { unknowns, needed, limit: limit.unwrap_or(needed) };
         if limit.is_some_and(|limit| needed > limit) {
@@ -84,7 +86,7 @@ impl Factorisation {
         let mut values = Vec::new();
         values.try_reserve_exact(symbolic.len_val()).map_err(|_| refused())?;
         values.resize(symbolic.len_val(), 0.0);
-        Ok(Self { symbolic, values, memory, pivoting: None, negative: 0 })
+        Ok(Self { symbolic, values, memory, pivoting: None, negative: 0, definite: false })
     }
 
     /// Entries of the factors.
@@ -110,6 +112,52 @@ impl Factorisation {
         self.refined(pattern, tangent, right)
     }
 
+    /// Solves `K x = right` for a tangent near the one that was factored, by conjugate gradients with the old factors as
+    /// preconditioner, to a residual of `tolerance` times the right-hand side. `None` where there are no definite factors,
+    /// the tangent is not definite, or `most` steps do not suffice.
+    pub fn solve_nearby(
+        &mut self,
+        pattern: &Pattern,
+        tangent: &[f64],
+        right: &[f64],
+        tolerance: f64,
+        most: usize,
+    ) -> Option<Vec<f64>> {
+        if !self.definite {
+            return None;
+        }
+        let wanted = tolerance * norm(right);
+        let mut x = vec![0.0; right.len()];
+        let mut residual = right.to_vec();
+        let mut direction: Vec<f64> = Vec::new();
+        let mut before = 1.0;
+        for step in 0..most {
+            let mut preconditioned = residual.clone();
+            self.apply(&mut preconditioned);
+            let now = dot(&residual, &preconditioned);
+            if step == 0 {
+                direction = preconditioned;
+            } else {
+                let kept = now / before;
+                direction.iter_mut().zip(&preconditioned).for_each(|(d, p)| *d = p + kept * *d);
+            }
+            before = now;
+            let product = pattern.multiply(tangent, &direction);
+            let curvature = dot(&direction, &product);
+            // Not a number fails as well.
+            if !(curvature > 0.0 && now > 0.0) {
+                return None;
+            }
+            let length = now / curvature;
+            x.iter_mut().zip(&direction).for_each(|(x, d)| *x += length * d);
+            residual.iter_mut().zip(&product).for_each(|(r, p)| *r -= length * p);
+            if norm(&residual) <= wanted {
+                return Some(x);
+            }
+        }
+        None
+    }
+
     /// Solves with the factors there are, and refines; `None` where the residual stays large.
     fn refined(&mut self, pattern: &Pattern, tangent: &[f64], right: &[f64]) -> Option<Vec<f64>> {
         let size = norm(right);
@@ -132,6 +180,7 @@ impl Factorisation {
     /// Unpivoted factors; `false` where a pivot vanished.
     fn factor(&mut self, pattern: &Pattern, tangent: &[f64]) -> bool {
         self.pivoting = None;
+        self.definite = false;
         let matrix = SparseColMatRef::new(structure(pattern), tangent);
         let done = self.symbolic.factorize_numeric_ldlt(
             &mut self.values,
@@ -147,7 +196,9 @@ impl Factorisation {
         }
         let diagonal = self.diagonal();
         self.negative = diagonal.iter().filter(|d| **d < 0.0).count();
-        diagonal.iter().all(|d| d.is_finite() && *d != 0.0)
+        let usable = diagonal.iter().all(|d| d.is_finite() && *d != 0.0);
+        self.definite = usable && self.negative == 0;
+        usable
     }
 
     fn factor_with_pivots(&mut self, pattern: &Pattern, tangent: &[f64]) {
@@ -193,7 +244,7 @@ impl Factorisation {
             Some(pivoting) => {
                 let order = PermRef::new_checked(&pivoting.forward, &pivoting.inverse, n);
                 IntranodeLbltRef::new(&self.symbolic, &self.values, &pivoting.subdiagonal, order)
-                    .solve_in_place_with_conj(Conj::No, right, parallel(), stack);
+                    .solve_in_place_with_conj(Conj::No, right, Par::Seq, stack);
             }
         }
     }
@@ -237,6 +288,10 @@ fn upper(pattern: &Pattern) -> (Vec<usize>, Vec<usize>) {
     (columns, rows)
 }
 
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
 fn norm(x: &[f64]) -> f64 {
-    x.iter().map(|v| v * v).sum::<f64>().sqrt()
+    dot(x, x).sqrt()
 }

@@ -12,6 +12,8 @@
 //! - [`morph`]: the closed strip, from the design's own prediction or along the path from flat;
 //! - [`recovery`]: mid-line, reactions, strains and stresses.
 
+#![allow(clippy::needless_range_loop, reason = "indices of tensors and matrices stand as in the equations")]
+
 pub mod assembly;
 pub mod element;
 mod error;

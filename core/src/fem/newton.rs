@@ -13,7 +13,13 @@ use crate::progress::Cancelled;
 /// Most iterations from one start.
 pub const MAX_ITERATIONS: usize = 30;
 /// Residual, relative to the elements' forces, at which an equilibrium counts as found.
-pub const TOLERANCE: f64 = 1e-8;
+pub const TOLERANCE: f64 = 1e-6;
+/// Residual, relative to the elements' forces, below which the tangent is factored once more: those factors count the
+/// negative eigenvalues at the equilibrium.
+const CLOSE: f64 = 1e-3;
+/// Residual to which a step is solved with older factors, and the steps that may take.
+const NEARBY_TOLERANCE: f64 = 1e-2;
+const NEARBY_STEPS: usize = 15;
 /// Change, relative to the strip's length, that is below what rounding allows to improve.
 const SMALLEST_STEP: f64 = 1e-12;
 /// Work of the residual on a step that is accepted, relative to that at its beginning.
@@ -101,6 +107,8 @@ impl<'a> Solver<'a> {
     ) -> Result<Equilibrium, Stop> {
         let length = self.model.mesh.nodes.last().map_or(1.0, |n| n[0].abs().max(1e-9));
         let mut iterations = 0;
+        // Whether the factors are those of a tangent close to the equilibrium's.
+        let mut close = false;
         let diverged = |iterations, residual| Stop::Diverged { iterations, residual };
         let Some(mut held) = forces(self.model, state, cancelled)? else { return Err(diverged(0, f64::INFINITY)) };
         let mut residual = self.pattern.gather(&held.of_nodes);
@@ -113,7 +121,20 @@ impl<'a> Solver<'a> {
             if !tangent(self.model, &self.pattern, state, &mut self.tangent, cancelled)? {
                 return Err(diverged(iterations, relative));
             }
-            let Some(mut change) = self.factors.solve(&self.pattern, &self.tangent, &residual) else {
+            let near = relative <= CLOSE;
+            let nearby = if near && !close {
+                None
+            } else {
+                self.factors.solve_nearby(&self.pattern, &self.tangent, &residual, NEARBY_TOLERANCE, NEARBY_STEPS)
+            };
+            let solved = match nearby {
+                Some(change) => Some(change),
+                None => {
+                    close = near;
+                    self.factors.solve(&self.pattern, &self.tangent, &residual)
+                }
+            };
+            let Some(mut change) = solved else {
                 return Err(diverged(iterations, relative));
             };
             iterations += 1;
@@ -124,7 +145,7 @@ impl<'a> Solver<'a> {
             residual = self.pattern.gather(&held.of_nodes);
             let relative = norm(&residual) / held.scale.max(f64::MIN_POSITIVE);
             let largest = change.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
-            if relative <= TOLERANCE || largest <= SMALLEST_STEP * length {
+            if (close && relative <= TOLERANCE) || largest <= SMALLEST_STEP * length {
                 step(iterations, relative);
                 return Ok(Equilibrium {
                     forces: held,

@@ -4,7 +4,7 @@ use serde_json::{Map, Value};
 
 use super::InputError;
 use super::document::Document;
-use super::parameters::{Kind, PARAMETERS, Parameter, TARGET_KINDS, parameter};
+use super::parameters::{Kind, OPTIONAL_TABLES, PARAMETERS, Parameter, TARGET_KINDS, parameter};
 
 /// Longest text that is echoed in an error.
 const LONGEST_ECHO: usize = 60;
@@ -140,7 +140,8 @@ fn fill_defaults(root: &mut Map<String, Value>, kind: &str) {
     for parameter in PARAMETERS.iter().filter(|p| p.applies_to(kind)) {
         let Some(default) = parameter.default.and_then(|text| serde_json::from_str(text).ok()) else { continue };
         let Some((table, key)) = parameter.key.rsplit_once('.') else { continue };
-        if LISTS_OF_TABLES.contains(&table) {
+        let absent = OPTIONAL_TABLES.contains(&table) && !root.contains_key(table);
+        if LISTS_OF_TABLES.contains(&table) || absent {
             continue;
         }
         if let Value::Object(table) = root.entry(table).or_insert_with(|| Value::Object(Map::new())) {
@@ -149,7 +150,17 @@ fn fill_defaults(root: &mut Map<String, Value>, kind: &str) {
     }
 }
 
-fn check_value(parameter: &Parameter, path: &str, value: &Value) -> Result<(), InputError> {
+/// The defaults of one table that is absent.
+pub(super) fn defaults(table: &str) -> Map<String, Value> {
+    let keys = PARAMETERS.iter().filter_map(|p| match p.key.rsplit_once('.') {
+        Some((of, key)) if of == table => Some((key, p.default?)),
+        _ => None,
+    });
+    keys.filter_map(|(key, text)| Some((key.to_owned(), serde_json::from_str(text).ok()?))).collect()
+}
+
+/// Checks one value against its parameter's type and range.
+pub(super) fn check_value(parameter: &Parameter, path: &str, value: &Value) -> Result<(), InputError> {
     let unit = parameter.unit.map(|u| format!(" {u}")).unwrap_or_default();
     let wrong = |problem: String| Err(InputError::new(path, show(value), problem).help(parameter.description));
     match (&parameter.kind, value) {

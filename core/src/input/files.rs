@@ -9,6 +9,11 @@ use sha2::{Digest, Sha256};
 use super::document::{Document, LARGEST_FILE};
 use super::model::DesignInput;
 use super::{InputError, check::check};
+use crate::error::Error;
+use crate::progress::{Cancelled, Watched, never};
+
+/// Bytes hashed between two questions whether to stop.
+const HASHED: usize = 1 << 20;
 
 /// How a design is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,6 +30,14 @@ impl DesignInput {
     /// # Errors
     /// [`InputError`] naming file, line, key and value.
     pub fn read(path: &Path) -> Result<Self, InputError> {
+        uncancelled(Self::read_unless(path, &never))
+    }
+
+    /// As [`Self::read`], but gives up once `cancelled` says so: a large mesh takes seconds.
+    ///
+    /// # Errors
+    /// [`Error::Input`] naming file, line, key and value; [`Error::Cancelled`].
+    pub fn read_unless(path: &Path, cancelled: Cancelled<'_>) -> Result<Self, Error> {
         let shown = path.display().to_string();
         let text = read_text(path, LARGEST_FILE).map_err(|problem| InputError::new("", "", problem).in_file(&shown))?;
         let format = match path.extension() {
@@ -33,7 +46,7 @@ impl DesignInput {
         };
         let stem = path.file_stem().map_or_else(|| "design".to_owned(), |s| s.to_string_lossy().into_owned());
         let folder = path.parent().unwrap_or_else(|| Path::new(""));
-        Self::from_text(&text, format, &shown, &stem, folder)
+        Self::from_text_unless(&text, format, &shown, &stem, folder, cancelled)
     }
 
     /// Reads a design from a text. `shown` names it in errors, `default_name` is the design's name where it has none,
@@ -48,6 +61,21 @@ impl DesignInput {
         default_name: &str,
         folder: &Path,
     ) -> Result<Self, InputError> {
+        uncancelled(Self::from_text_unless(text, format, shown, default_name, folder, &never))
+    }
+
+    /// As [`Self::from_text`], but gives up once `cancelled` says so.
+    ///
+    /// # Errors
+    /// [`Error::Input`] naming file, line, key and value; [`Error::Cancelled`].
+    pub fn from_text_unless(
+        text: &str,
+        format: Format,
+        shown: &str,
+        default_name: &str,
+        folder: &Path,
+        cancelled: Cancelled<'_>,
+    ) -> Result<Self, Error> {
         let parsed = match format {
             Format::Toml => Document::from_toml(text),
             Format::Json => Document::from_json(text),
@@ -69,26 +97,53 @@ impl DesignInput {
         if let Some(thrust) = &mut input.thrust {
             thrust.choice = Some(thrust.resolved_choice());
         }
-        input.load_target(folder).map_err(located)?;
+        input.load_target(folder, cancelled).map_err(|error| match error {
+            Error::Input(error) => Error::Input(located(error)),
+            other => other,
+        })?;
         Ok(input)
     }
+}
+
+/// The input error of work that nothing cancels.
+fn uncancelled(read: Result<DesignInput, Error>) -> Result<DesignInput, InputError> {
+    read.map_err(|error| match error {
+        Error::Input(error) => error,
+        other => InputError::new("", "", other.to_string()),
+    })
 }
 
 /// Hexadecimal SHA-256.
 #[must_use]
 pub fn hex_sha256(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|b| format!("{b:02x}")).collect()
+    hex(&Sha256::digest(bytes))
+}
+
+/// As [`hex_sha256`], but `None` once `cancelled` says so.
+pub(crate) fn hex_sha256_unless(bytes: &[u8], cancelled: Cancelled<'_>) -> Option<String> {
+    let mut hasher = Sha256::new();
+    for piece in bytes.chunks(HASHED) {
+        if cancelled() {
+            return None;
+        }
+        hasher.update(piece);
+    }
+    Some(hex(&hasher.finalize()))
+}
+
+fn hex(digest: &[u8]) -> String {
+    digest.iter().map(|b| format!("{b:02x}")).collect()
 }
 
 fn read_text(path: &Path, largest: u64) -> Result<String, String> {
-    String::from_utf8(read_bytes(path, largest)?).map_err(|error| {
+    String::from_utf8(read_bytes(path, largest, &never)?).map_err(|error| {
         let line = 1 + error.as_bytes()[..error.utf8_error().valid_up_to()].iter().filter(|b| **b == b'\n').count();
         format!("line {line} is not UTF-8 text")
     })
 }
 
 /// Reads a file of limited size; the limit is checked before memory is taken and while reading.
-pub(crate) fn read_bytes(path: &Path, largest: u64) -> Result<Vec<u8>, String> {
+pub(crate) fn read_bytes(path: &Path, largest: u64, cancelled: Cancelled<'_>) -> Result<Vec<u8>, String> {
     let describe = |error: std::io::Error| match error.kind() {
         std::io::ErrorKind::NotFound => "there is no such file".to_owned(),
         std::io::ErrorKind::PermissionDenied => "this file may not be read".to_owned(),
@@ -109,6 +164,6 @@ pub(crate) fn read_bytes(path: &Path, largest: u64) -> Result<Vec<u8>, String> {
         return too_large(metadata.len());
     }
     let mut bytes = Vec::new();
-    file.take(largest + 1).read_to_end(&mut bytes).map_err(describe)?;
+    Watched::new(file.take(largest + 1), cancelled).read_to_end(&mut bytes).map_err(describe)?;
     if bytes.len() as u64 > largest { too_large(bytes.len() as u64) } else { Ok(bytes) }
 }

@@ -7,8 +7,10 @@
 //! - [`model`] is the typed result.
 
 pub mod check;
+pub mod conduction;
 pub mod document;
 mod error;
+pub mod fabrication;
 pub mod files;
 pub mod model;
 pub mod parameters;
@@ -16,7 +18,9 @@ pub mod reference;
 pub mod schema;
 pub mod target_file;
 
+pub use conduction::{ConductionInput, Electrode, ThresholdOf};
 pub use error::{InputError, InputProblem};
+pub use fabrication::{FabricationInput, FabricationKind, PrintSource, Printer, Scope, ThreeMfGeometry};
 pub use model::{
     DeckKind, DeckSolver, DeckStyle, DecksInput, DesignInput, MaterialsInput, StripsInput, TargetInput, ThrustInput,
     VoxelsInput,

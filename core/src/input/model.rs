@@ -3,6 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::InputError;
+use super::conduction::ConductionInput;
+use super::fabrication::FabricationInput;
 use crate::elastica::{HubSupport, ThrustChoice};
 use crate::materials::{Material, library};
 use crate::micromechanics::PhaseSet;
@@ -28,8 +30,17 @@ pub struct DesignInput {
     pub materials: MaterialsInput,
     /// The voxels.
     pub voxels: VoxelsInput,
+    /// Correction by finite elements; absent where there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub refine: Option<RefineInput>,
     /// The decks.
     pub decks: DecksInput,
+    /// The files to make the thing; absent where the design file says nothing about them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fabrication: Option<FabricationInput>,
+    /// Heat and current; absent where the defaults are meant.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub conduction: Option<ConductionInput>,
 }
 
 /// The target of a design.
@@ -182,8 +193,55 @@ pub struct VoxelsInput {
     pub rounding: Rounding,
 }
 
-/// A key of a material, and its value where the material has one.
-type Need = (&'static str, fn(&Material) -> Option<f64>);
+/// Correction of the modulus by finite elements.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RefineInput {
+    /// Solutions that may be spent on it; zero for none.
+    #[serde(default)]
+    pub iterations: usize,
+    /// Factors of the voxels' modulus at evenly spaced arc lengths, rim first, that were found.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub correction: Vec<f64>,
+    /// Largest distance from the target, percent of the length: without a correction, and after every step.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub errors_percent: Vec<f64>,
+}
+
+impl RefineInput {
+    /// Most factors of a correction.
+    pub const MOST_FACTORS: usize = 1001;
+    /// Smallest and largest factor.
+    pub const FACTORS: [f64; 2] = [0.01, 100.0];
+
+    /// The factor at a share of the strip's length, linear between the recorded ones; one without a correction.
+    #[must_use]
+    pub fn factor(&self, share: f64) -> f64 {
+        let (Some(last), Some(first)) = (self.correction.len().checked_sub(1), self.correction.first()) else {
+            return 1.0;
+        };
+        let at = (share * last as f64).clamp(0.0, last as f64);
+        let i = (at as usize).min(last.saturating_sub(1));
+        let (low, high) = (self.correction.get(i).unwrap_or(first), self.correction.get(i + 1).unwrap_or(first));
+        low + (at - i as f64) * (high - low)
+    }
+
+    fn validate(&self) -> Result<(), InputError> {
+        let [least, most] = Self::FACTORS;
+        if self.correction.len() > Self::MOST_FACTORS {
+            let problem = format!("a correction has at most {} factors", Self::MOST_FACTORS);
+            return Err(InputError::new("refine.correction", self.correction.len(), problem));
+        }
+        match self.correction.iter().position(|f| !(least..=most).contains(f)) {
+            Some(i) => {
+                let problem = format!("factors lie between {least} and {most}");
+                Err(InputError::new(format!("refine.correction.{i}"), self.correction[i], problem)
+                    .help("design again with iterations and without a correction"))
+            }
+            None => Ok(()),
+        }
+    }
+}
 
 /// A kind of deck.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -234,7 +292,7 @@ impl DeckKind {
     }
 
     /// Keys of a material that the deck cannot do without.
-    fn needs(self) -> &'static [Need] {
+    fn needs(self) -> &'static [(&'static str, MaterialValue)] {
         match self {
             Self::VoxelHeat | Self::GradedHeat => &[("conductivity_w_mk", |m| m.conductivity_w_mk)],
             Self::VoxelCurrent | Self::GradedCurrent => &[
@@ -245,6 +303,9 @@ impl DeckKind {
         }
     }
 }
+
+/// A value that a material may have.
+type MaterialValue = fn(&Material) -> Option<f64>;
 
 /// A solver that decks are written for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -322,6 +383,14 @@ impl DesignInput {
     #[must_use]
     pub fn hub_radius(&self) -> f64 {
         self.strips.hub_radius_mm.unwrap_or(0.0)
+    }
+
+    /// How the thing is made: the design file's table, or its defaults.
+    ///
+    /// # Errors
+    /// None in practice: the defaults of the table of parameters are values of its own types.
+    pub fn fabrication(&self) -> Result<FabricationInput, InputError> {
+        self.fabrication.clone().map_or_else(FabricationInput::defaults, Ok)
     }
 
     /// The phases, from the custom materials and the library.
@@ -414,6 +483,15 @@ impl DesignInput {
             let problem = "C3D8R needs at least four elements through the thickness to bend";
             return Err(InputError::new("decks.graded_elements", format!("{:?}", self.decks.graded_elements), problem)
                 .help("use four or more, or solid_element = \"C3D8I\""));
+        }
+        if let Some(fabrication) = &self.fabrication {
+            fabrication.validate()?;
+        }
+        if let Some(conduction) = &self.conduction {
+            conduction.validate()?;
+        }
+        if let Some(refine) = &self.refine {
+            refine.validate()?;
         }
         let size = self.voxels.size_mm;
         Lattice::new(self.strips.length_mm, self.strips.thickness_mm, size)

@@ -2,6 +2,9 @@
 //!
 //! Checks, JSON Schema, the reference in `docs/design-file.md` and the forms of host programs are all made from it.
 
+mod conduction;
+mod fabrication;
+
 use serde::Serialize;
 
 /// What a key accepts.
@@ -109,8 +112,42 @@ const fn between(least: f64, most: f64) -> Kind {
 const BASE: Parameter =
     Parameter { key: "", kind: Kind::Text, unit: None, default: None, required: false, targets: &[], description: "" };
 
+/// Keys by subject, in the order in which a design file is read.
+const GROUPS: [&[Parameter]; 3] = [DESIGN, conduction::CONDUCTION, fabrication::FABRICATION];
+
+/// Number of keys.
+const COUNT: usize = {
+    let (mut count, mut group) = (0, 0);
+    while group < GROUPS.len() {
+        count += GROUPS[group].len();
+        group += 1;
+    }
+    count
+};
+
 /// All keys, in the order in which a design file is read.
-pub const PARAMETERS: &[Parameter] = &[
+pub const PARAMETERS: &[Parameter] = &all();
+
+const fn all() -> [Parameter; COUNT] {
+    let mut all = [BASE; COUNT];
+    let (mut next, mut group) = (0, 0);
+    while group < GROUPS.len() {
+        let mut i = 0;
+        while i < GROUPS[group].len() {
+            all[next] = GROUPS[group][i];
+            next += 1;
+            i += 1;
+        }
+        group += 1;
+    }
+    all
+}
+
+/// Tables that a design has only where its file has them, so that their defaults change no other design.
+pub const OPTIONAL_TABLES: [&str; 2] = ["conduction", "fabrication"];
+
+/// Keys of the design itself.
+const DESIGN: &[Parameter] = &[
     Parameter {
         key: "name",
         description: "Name of the design, used in file names; by default the file's stem.",
@@ -319,6 +356,12 @@ pub const PARAMETERS: &[Parameter] = &[
         ..BASE
     },
     Parameter {
+        key: "materials.custom.relative_permittivity",
+        kind: between(1.0, 1e6),
+        description: "Permittivity relative to that of vacuum.",
+        ..BASE
+    },
+    Parameter {
         key: "materials.custom.max_strain",
         kind: length(100.0),
         description: "Largest principal strain the material stands.",
@@ -361,6 +404,24 @@ pub const PARAMETERS: &[Parameter] = &[
         kind: Kind::Choice { choices: &["nearest", "inward"] },
         default: Some("\"nearest\""),
         description: "How the half-width is rounded to voxels; inward avoids overlaps of neighbouring spokes.",
+        ..BASE
+    },
+    Parameter {
+        key: "refine.iterations",
+        kind: Kind::Integer { least: 0, most: 20 },
+        description: "Finite-element solutions that may be spent on correcting the modulus; none without this table.",
+        ..BASE
+    },
+    Parameter {
+        key: "refine.correction",
+        kind: Kind::Recorded,
+        description: "Factors of the voxels' modulus from rim to hub that were found.",
+        ..BASE
+    },
+    Parameter {
+        key: "refine.errors_percent",
+        kind: Kind::Recorded,
+        description: "Largest distance from the target before and after every step.",
         ..BASE
     },
     Parameter {

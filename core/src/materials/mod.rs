@@ -1,5 +1,8 @@
 //! Materials: the built-in library and custom ones.
 
+mod assumptions;
+
+pub use assumptions::{AssumedProperty, Assumption, assumptions};
 use serde::{Deserialize, Serialize};
 
 /// An isotropic material. Only modulus and Poisson's ratio are needed for a design.
@@ -24,6 +27,9 @@ pub struct Material {
     /// Electrical conductivity, S/m.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub electrical_conductivity_s_m: Option<f64>,
+    /// Permittivity relative to that of vacuum.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub relative_permittivity: Option<f64>,
     /// Largest principal strain the material stands, dimensionless.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max_strain: Option<f64>,
@@ -69,6 +75,7 @@ pub fn label(name: &str) -> String {
 ///
 /// Moduli in MPa, densities in kg/m^3, conductivities in W/(m K) and S/m; Poisson's ratio is 0.3 throughout, as in the
 /// paper. (Its body text swaps FLX9070 and FLX9095; its appendix and these values have the softer one as FLX9070.)
+/// Specific heats and permittivities are not in the paper: they are [`assumptions`].
 #[must_use]
 pub fn library() -> Vec<Material> {
     let plain = |name: &str, modulus_mpa: f64, density: f64| Material {
@@ -79,6 +86,7 @@ pub fn library() -> Vec<Material> {
         conductivity_w_mk: None,
         specific_heat_j_kgk: None,
         electrical_conductivity_s_m: None,
+        relative_permittivity: None,
         max_strain: None,
     };
     let conducting = |name: &str, modulus: f64, density: f64, heat: f64, current: f64| Material {
@@ -86,14 +94,23 @@ pub fn library() -> Vec<Material> {
         electrical_conductivity_s_m: Some(current),
         ..plain(name, modulus, density)
     };
-    vec![
+    let mut library = vec![
         plain("FLX9070", 3.1, 1145.0),
         plain("FLX9095", 12.6, 1170.0),
         plain("TangoBlack", 0.62, 1145.0),
         plain("VeroClear", 2033.33, 1170.0),
         conducting("PI + 15 % graphite", 3330.0, 1410.0, 0.3155, 1e-7),
         conducting("PLA + 30 % carbon fibre", 10200.0, 1270.0, 2.01, 2.86e-23),
-    ]
+    ];
+    for material in &mut library {
+        for assumption in assumptions(material) {
+            match assumption.property {
+                AssumedProperty::SpecificHeat => material.specific_heat_j_kgk = Some(assumption.value),
+                AssumedProperty::RelativePermittivity => material.relative_permittivity = Some(assumption.value),
+            }
+        }
+    }
+    library
 }
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
 //! Writing files such that nothing half-written is ever seen.
 
 use std::fs;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 
-use tempfile::NamedTempFile;
+use tempfile::{NamedTempFile, TempDir};
 
 use crate::error::Error;
 
@@ -17,6 +17,7 @@ const BUFFER: usize = 1 << 20;
 pub struct Staging {
     root: PathBuf,
     files: Vec<(PathBuf, NamedTempFile)>,
+    folders: Vec<StagedFolder>,
     /// Folders that were made for this and are removed again if nothing is committed.
     made: Vec<PathBuf>,
 }
@@ -27,7 +28,7 @@ impl Staging {
     /// # Errors
     /// [`Error::Output`] where it cannot be made.
     pub fn new(root: &Path) -> Result<Self, Error> {
-        let mut staging = Self { root: root.to_owned(), files: Vec::new(), made: Vec::new() };
+        let mut staging = Self { root: root.to_owned(), files: Vec::new(), folders: Vec::new(), made: Vec::new() };
         staging.make(root)?;
         Ok(staging)
     }
@@ -54,7 +55,11 @@ impl Staging {
     ///
     /// # Errors
     /// [`Error::Output`] naming the file, or what `write` returns.
-    pub fn write<E>(&mut self, relative: &str, write: impl FnOnce(&mut dyn Write) -> Result<(), E>) -> Result<(), Error>
+    pub fn write<E>(
+        &mut self,
+        relative: &str,
+        write: impl FnOnce(&mut dyn Destination) -> Result<(), E>,
+    ) -> Result<(), Error>
     where
         E: Into<WriteFailure>,
     {
@@ -88,11 +93,39 @@ impl Staging {
         self.write(relative, |out| out.write_all(text.as_bytes()))
     }
 
-    /// Gives all files their final names.
+    /// Fills a folder of its own, given by its path relative to the whole one. It appears as a whole: an earlier folder of that
+    /// name is replaced, except for files that `is_ours` does not know, which are carried over.
     ///
     /// # Errors
-    /// [`Error::Output`] naming the first file that could not be renamed.
+    /// [`Error::Output`] naming the folder, or what `fill` returns.
+    pub fn write_folder<T>(
+        &mut self,
+        relative: &str,
+        is_ours: fn(&str) -> bool,
+        fill: impl FnOnce(&StagedFolder) -> Result<T, Error>,
+    ) -> Result<T, Error> {
+        let path = self.root.join(relative);
+        let parent = path.parent().unwrap_or(&self.root).to_owned();
+        self.make(&parent)?;
+        if path.exists() && !path.is_dir() {
+            return Err(Error::output(&path, &io::Error::from(io::ErrorKind::AlreadyExists)));
+        }
+        let made = temporary_folder(&parent).map_err(|e| Error::output(&path, &e))?;
+        let folder = StagedFolder { path, made, is_ours };
+        let filled = fill(&folder)?;
+        self.folders.push(folder);
+        Ok(filled)
+    }
+
+    /// Gives all files and folders their final names.
+    ///
+    /// # Errors
+    /// [`Error::Output`] naming the first one that could not be renamed.
     pub fn commit(mut self) -> Result<(), Error> {
+        for folder in self.folders.drain(..) {
+            let path = folder.path.clone();
+            folder.place().map_err(|e| Error::output(&path, &e))?;
+        }
         for (path, file) in self.files.drain(..) {
             file.persist(&path).map_err(|e| Error::output(&path, &e.error))?;
         }
@@ -104,10 +137,61 @@ impl Staging {
 impl Drop for Staging {
     fn drop(&mut self) {
         self.files.clear();
+        self.folders.clear();
         // Only empty folders go; whatever else is in them stays.
         for folder in self.made.iter().rev() {
             let _ = fs::remove_dir(folder);
         }
+    }
+}
+
+/// What a file is written to; containers go back to fill in what they know last.
+pub trait Destination: Write + Seek {}
+
+impl<T: Write + Seek> Destination for T {}
+
+/// A folder in the making, under a temporary name.
+#[derive(Debug)]
+pub struct StagedFolder {
+    path: PathBuf,
+    made: TempDir,
+    is_ours: fn(&str) -> bool,
+}
+
+impl StagedFolder {
+    /// Writes one file of the folder; from any thread.
+    ///
+    /// # Errors
+    /// [`Error::Output`] naming the file's final place.
+    pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), Error> {
+        fs::write(self.made.path().join(name), bytes).map_err(|e| Error::output(self.path.join(name), &e))
+    }
+
+    /// Takes the place of an earlier folder.
+    fn place(self) -> io::Result<()> {
+        let Self { path, made, is_ours } = self;
+        if !path.is_dir() {
+            fs::rename(made.path(), &path)?;
+            let _ = made.keep();
+            return Ok(());
+        }
+        let parent = path.parent().unwrap_or(Path::new("."));
+        let aside = temporary_folder(parent)?;
+        let old = aside.path().join("old");
+        fs::rename(&path, &old)?;
+        if let Err(error) = fs::rename(made.path(), &path) {
+            let _ = fs::rename(&old, &path);
+            return Err(error);
+        }
+        let _ = made.keep();
+        for entry in fs::read_dir(&old)?.filter_map(Result::ok) {
+            let name = entry.file_name();
+            let place = path.join(&name);
+            if !name.to_str().is_some_and(is_ours) && !place.exists() {
+                fs::rename(entry.path(), place)?;
+            }
+        }
+        Ok(())
     }
 }
 
@@ -139,6 +223,14 @@ fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
     builder.tempfile_in(folder)
 }
 
+fn temporary_folder(folder: &Path) -> io::Result<TempDir> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".voxelastica-").suffix(".tmp");
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
+    builder.tempdir_in(folder)
+}
+
 /// Bytes free where `folder` is or will be; `None` where the system does not say.
 #[must_use]
 pub fn free_bytes(folder: &Path) -> Option<u64> {
@@ -167,6 +259,40 @@ mod tests {
         staging.commit().unwrap();
         assert_eq!(fs::read_to_string(target.join("c/one.txt")).unwrap(), "1");
         assert_eq!(fs::read_dir(target.join("c")).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_folder_appears_as_a_whole_and_keeps_what_is_not_ours() {
+        let root = tempfile::tempdir().unwrap();
+        let fill = |count: usize| {
+            let mut staging = Staging::new(&root.path().join("a")).unwrap();
+            let is_ours = |name: &str| name.ends_with(".png");
+            let filled = staging.write_folder("b/stack", is_ours, |folder| {
+                (0..count).try_for_each(|i| folder.write(&format!("{i}.png"), &[i as u8]))?;
+                if count == 0 { Err(Error::Cancelled) } else { Ok(count) }
+            });
+            filled.map(|count| (count, staging))
+        };
+        let list = || {
+            let mut names: Vec<String> = fs::read_dir(root.path().join("a/b/stack"))
+                .unwrap()
+                .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+                .collect();
+            names.sort();
+            names
+        };
+        assert!(matches!(fill(0), Err(Error::Cancelled)));
+        assert!(!root.path().join("a").exists());
+        let (_, staging) = fill(3).unwrap();
+        assert!(!root.path().join("a/b/stack").exists());
+        staging.commit().unwrap();
+        assert_eq!(list(), ["0.png", "1.png", "2.png"]);
+        fs::write(root.path().join("a/b/stack/mine.txt"), "mine").unwrap();
+        fill(2).unwrap().1.commit().unwrap();
+        assert_eq!(list(), ["0.png", "1.png", "mine.txt"]);
+        drop(fill(1).unwrap());
+        assert_eq!(list(), ["0.png", "1.png", "mine.txt"]);
+        assert_eq!(fs::read_dir(root.path().join("a/b")).unwrap().count(), 1);
     }
 
     #[test]

@@ -28,6 +28,9 @@ pub struct Summary {
     pub rim_radius_mm: f64,
     /// Largest distance of the voxelised strip's predicted mid-line from the target, percent of the length.
     pub predicted_error_percent: Option<f64>,
+    /// What finite elements corrected, where they did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub refinement: Option<Refined>,
     /// Volumes.
     pub volume_mm3: Volumes,
     /// Slices and layers of the voxel lattice.
@@ -36,6 +39,25 @@ pub struct Summary {
     pub voxels: serde_json::Map<String, serde_json::Value>,
     /// Voxels of one spoke.
     pub voxels_per_spoke: u64,
+}
+
+/// A correction of the modulus by finite elements: largest distance of the strip's mid-line from the target.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Refined {
+    /// Without a correction, percent of the length.
+    pub error_before_percent: f64,
+    /// With the one that was kept.
+    pub error_after_percent: f64,
+    /// Solutions that were spent.
+    pub solutions: usize,
+}
+
+impl Refined {
+    fn of(design: &Design) -> Option<Self> {
+        let errors = &design.input().refine.as_ref()?.errors_percent;
+        let best = errors.iter().copied().fold(f64::INFINITY, f64::min);
+        Some(Self { error_before_percent: *errors.first()?, error_after_percent: best, solutions: errors.len() })
+    }
 }
 
 /// Forces of one spoke and of all, for beam bending and for plane strain across the width.
@@ -117,6 +139,7 @@ impl Summary {
             height_mm: profile.z[last],
             rim_radius_mm: profile.rho[0],
             predicted_error_percent: design.predicted_error().map(|e| 100.0 * e),
+            refinement: Refined::of(design),
             volume_mm3: Volumes {
                 spoke_smooth,
                 spoke_voxels: design.grid().volume_mm3(),

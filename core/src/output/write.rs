@@ -8,6 +8,8 @@ use super::{Provenance, Summary, design_json, json, tables};
 use crate::deck::{self, DeckError, DeckPlan};
 use crate::design::Design;
 use crate::error::Error;
+use crate::fabrication::record::Earlier;
+use crate::fabrication::{self, Plan};
 use crate::input::{DeckKind, DeckSolver};
 use crate::progress::Progress;
 use crate::{SCHEMA, report};
@@ -60,11 +62,13 @@ pub enum OutputKind {
     Report,
     /// `design.json`.
     Design,
+    /// The files to make the thing that the design asks for (`fabrication.write`).
+    Fabrication,
 }
 
 impl OutputKind {
-    /// All kinds, in the order in which they are written.
-    pub const ALL: [Self; 7] = [
+    /// All kinds. The order is that of the bits in the C ABI: new ones come last, whenever they are written.
+    pub const ALL: [Self; 8] = [
         Self::Deck(DeckKind::GradedShell),
         Self::Deck(DeckKind::GradedSolid),
         Self::Deck(DeckKind::VoxelSolid),
@@ -72,6 +76,7 @@ impl OutputKind {
         Self::Tables,
         Self::Report,
         Self::Design,
+        Self::Fabrication,
     ];
 }
 
@@ -86,10 +91,10 @@ pub struct Written {
     pub files: Vec<String>,
 }
 
-/// Writes a design into a folder: decks, tables, report, and `design.json` last. Either all files get their final names
-/// or none.
+/// Writes a design into a folder: decks, files to make it, tables, report, and `design.json` last. Either all files get their
+/// final names or none.
 ///
-/// `progress` is told the bytes written so far and may cancel.
+/// `progress` is told the work done so far, in bytes written and print voxels drawn, and may cancel.
 ///
 /// # Errors
 /// [`Error::Output`] naming the file or folder, or the estimate where the disk has no room; [`Error::Cancelled`].
@@ -103,8 +108,8 @@ pub fn write_design(
 }
 
 /// Writes some kinds of a design's outputs into a folder, as [`write_design`] does. Decks are those of the kinds asked for
-/// that the design has (`decks.write`, `decks.solvers`). Files of an earlier design are removed only where all kinds are
-/// written. `total` is told once how many bytes that will be, about.
+/// that the design has (`decks.write`, `decks.solvers`), and so are the files to make it (`fabrication.write`). Files of an
+/// earlier design are removed only where all kinds are written. `total` is told once how much work that will be, about.
 ///
 /// # Errors
 /// Those of [`write_design`].
@@ -125,16 +130,41 @@ pub fn write_outputs(
     } else {
         None
     };
-    let mut decks = deck::plan(design);
+    // The bytes done are none: asking is all that this is about.
+    let mut decks = deck::plan_unless(design, &|| !progress(0)).map_err(|_| Error::Cancelled)?;
     decks.retain(|d| wants(OutputKind::Deck(d.kind.mesh())));
     let fractions = decks.iter().any(|d| d.solver == DeckSolver::Nastran);
-    total(OTHER_FILES + decks.iter().map(|d| d.bytes).sum::<u64>());
+    let fabrication = match wants(OutputKind::Fabrication) {
+        true => Some(Plan::of_design(design, &provenance, options.allow_large)?),
+        false => None,
+    };
+    let estimate = fabrication.as_ref().map(Plan::estimate).unwrap_or_default();
+    let bytes = OTHER_FILES + decks.iter().map(|d| d.bytes).sum::<u64>();
+    total(bytes + estimate.work());
     if !progress(0) {
         return Err(Error::Cancelled);
     }
-    require_room(folder, &decks, options)?;
+    require_room(folder, bytes + estimate.bytes, options)?;
+
+    let mut staging = Staging::new(folder)?;
+    let mut before = 0;
+    for plan in &decks {
+        let counted = |bytes: u64| progress(before + bytes);
+        staging.write(&plan.relative_path(), |out| deck::write(design, plan, &provenance, out, &counted))?;
+        before += plan.bytes;
+    }
+    let earlier = Earlier::read(folder);
+    let made = match &fabrication {
+        Some(plan) => {
+            let counted = |work: u64| progress(before + work);
+            fabrication::stage(plan, design, &provenance, &earlier, &mut staging, &counted)?
+        }
+        None => fabrication::Fabricated::default(),
+    };
+    before += estimate.work();
 
     let mut files: Vec<(String, String)> = decks.iter().map(|d| (d.relative_path(), describe(d))).collect();
+    files.extend(made.made.iter().flat_map(|(_, made)| made.listed.iter().cloned()));
     if fractions {
         files.push((FRACTIONS.to_owned(), "fractions of the phases along the spoke".to_owned()));
     }
@@ -148,15 +178,12 @@ pub fn write_outputs(
     others(OutputKind::Tables, "slices.csv", format!("counts, modulus and stiffness of {slices} slices"));
     others(OutputKind::Report, "report.html", "this page".to_owned());
     others(OutputKind::Design, "design.json", "the whole result, for programs".to_owned());
-    let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
-
-    let mut staging = Staging::new(folder)?;
-    let mut before = 0;
-    for plan in &decks {
-        let counted = |bytes: u64| progress(before + bytes);
-        staging.write(&plan.relative_path(), |out| deck::write(design, plan, &provenance, out, &counted))?;
-        before += plan.bytes;
-    }
+    // The page lists groups of files, the record every one.
+    let is_group = |name: &&str| made.made.iter().any(|(_, made)| made.listed.iter().any(|(group, _)| group == name));
+    let paths: Vec<String> = decks.iter().map(DeckPlan::relative_path).collect();
+    let mut names: Vec<&str> = paths.iter().map(String::as_str).collect();
+    names.extend(made.files.iter().map(String::as_str));
+    names.extend(files.iter().skip(decks.len()).map(|(name, _)| name.as_str()).filter(|name| !is_group(name)));
     if fractions {
         staging.write(FRACTIONS, |out| tables::write_fractions(design, out))?;
     }
@@ -179,19 +206,14 @@ pub fn write_outputs(
     }
     if OutputKind::ALL.iter().all(|kind| wants(*kind)) {
         remove_stale(folder, &names);
+        earlier.remove(folder, &made.files, &earlier.staying(&provenance, &made.made));
     }
     staging.commit()?;
     Ok(Written { summary, provenance, files: names.iter().map(|n| (*n).to_owned()).collect() })
 }
 
-/// Bytes that writing a design takes, estimated.
-#[must_use]
-pub fn estimated_bytes(design: &Design) -> u64 {
-    OTHER_FILES + deck::plan(design).iter().map(|d| d.bytes).sum::<u64>()
-}
-
-fn require_room(folder: &Path, decks: &[DeckPlan], options: WriteOptions) -> Result<(), Error> {
-    let needed = OTHER_FILES + decks.iter().map(|d| d.bytes).sum::<u64>();
+/// Refuses what the disk has no room for, unless that was insisted on.
+pub(crate) fn require_room(folder: &Path, needed: u64, options: WriteOptions) -> Result<(), Error> {
     match free_bytes(folder) {
         Some(free) if needed > free && !options.allow_large => Err(Error::Output {
             path: folder.to_owned(),
@@ -201,7 +223,8 @@ fn require_room(folder: &Path, decks: &[DeckPlan], options: WriteOptions) -> Res
                 free / 1_000_000
             ),
             help:
-                "use larger voxels, write fewer decks (decks.write), choose another disk with -o, or insist with --yes"
+                "use larger voxels, write fewer decks (decks.write) or files to make it (fabrication.write), choose another \
+                 disk with -o, or insist with --yes"
                     .to_owned(),
         }),
         _ => Ok(()),

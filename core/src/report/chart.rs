@@ -9,7 +9,7 @@ use plotters::style::{Color, FontFamily, FontStyle, IntoFont, RGBAColor, RGBColo
 use super::ReportError;
 use super::palette::{AXIS, Colour, GRID, INK, MUTED};
 use super::svg::{Stroke, Svg};
-use super::text::number;
+use super::text::{number, power_of_ten};
 
 /// Plotters rounds to whole pixels: charts are drawn so many times larger and scaled back.
 const FINE: f64 = 20.0;
@@ -39,13 +39,15 @@ pub struct Axis {
     pub labels: usize,
     /// Whether both directions count from the middle: labels have no sign.
     pub both_ways: bool,
+    /// Whether values are decimal logarithms: whole ones are labelled with their power of ten.
+    pub decades: bool,
 }
 
 impl Axis {
     /// An axis that counts in one direction.
     #[must_use]
     pub fn new(description: &str, range: [f64; 2], labels: usize) -> Self {
-        Self { description: description.to_owned(), range, labels, both_ways: false }
+        Self { description: description.to_owned(), range, labels, both_ways: false, decades: false }
     }
 
     /// Space for its labels below the plotting area.
@@ -138,7 +140,7 @@ impl Chart {
             .x_labels(self.x.labels)
             .y_labels(self.y.labels)
             .x_label_formatter(&|v| tick(if self.x.both_ways { v.abs() } else { *v }, [x0, x1]))
-            .y_label_formatter(&|v| tick(*v, [y0, y1]))
+            .y_label_formatter(&|v| if self.y.decades { decade(*v) } else { tick(*v, [y0, y1]) })
             .x_desc(self.x.description.as_str())
             .y_desc(self.y.description.as_str())
             .axis_style(style(&Stroke::solid(AXIS, 1.0)))
@@ -238,6 +240,11 @@ fn tick(value: f64, [from, to]: [f64; 2]) -> String {
     number(value, needed.min(9))
 }
 
+/// The label of a whole logarithm.
+fn decade(value: f64) -> String {
+    if (value - value.round()).abs() > 1e-6 { String::new() } else { power_of_ten(value.round() as i32) }
+}
+
 fn fine(length: f64) -> u32 {
     (length * FINE).round().clamp(0.0, 1e6) as u32
 }
@@ -305,6 +312,11 @@ mod tests {
             assert!((across / up - 1.0).abs() < 1e-9);
             assert!(wide[0] <= x[0] && wide[1] >= x[1] && tall[0] <= y[0] && tall[1] >= y[1]);
         }
+    }
+
+    #[test]
+    fn whole_logarithms_are_powers_of_ten() {
+        assert_eq!((decade(-23.0), decade(0.5)), ("10⁻²³".to_owned(), String::new()));
     }
 
     #[test]

@@ -50,14 +50,20 @@ pub fn tiles(design: &Design, summary: &Summary) -> String {
     );
     let which = if summary.contrast < 1.0 + 1e-6 { "everywhere" } else { "least and largest, designed" };
     let modulus = Tile::new("Modulus", modulus, "MPa", which.to_owned());
-    let predicted = || match summary.predicted_error_percent {
-        Some(error) => Tile::new(
+    let predicted = || match (summary.refinement, summary.predicted_error_percent) {
+        (Some(refined), _) => Tile::new(
+            "Refined error",
+            number(refined.error_after_percent, 3),
+            "% of L",
+            format!("{} % before, finite elements", number(refined.error_before_percent, 3)),
+        ),
+        (None, Some(error)) => Tile::new(
             "Predicted error",
             number(error, 3),
             "% of L",
             format!("{} mm, voxelised", number(0.01 * error * length, 3)),
         ),
-        None => Tile::new("Predicted error", "–".to_owned(), "", "the shape was not found".to_owned()),
+        (None, None) => Tile::new("Predicted error", "–".to_owned(), "", "the shape was not found".to_owned()),
     };
     let compression = || {
         let moved = n(length * summary.compression);

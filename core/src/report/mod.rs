@@ -10,6 +10,7 @@
 
 mod cells;
 mod chart;
+pub mod conduction;
 mod error;
 mod figures;
 mod key_numbers;
@@ -23,4 +24,20 @@ pub mod verification;
 
 pub use error::ReportError;
 pub use page::html;
+pub(crate) use text::{escape, number};
 pub use verification::{VerificationPicture, verification_svg};
+
+/// The colour of one of `count` phases, softest first: red, green, blue, the same in pictures and in printed files.
+#[must_use]
+pub fn phase_colour(index: usize, count: usize) -> [u8; 3] {
+    palette::phase(index, count).0
+}
+
+/// The colour of the hub.
+pub const HUB_COLOUR: [u8; 3] = palette::HUB.0;
+
+/// The colour of a share from soft (0) to stiff (1).
+#[must_use]
+pub fn modulus_colour(share: f64) -> [u8; 3] {
+    palette::ramp(share).0
+}

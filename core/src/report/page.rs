@@ -1,7 +1,7 @@
 //! The page: what stands where.
 
 use super::ReportError;
-use super::figures::{flower, meridian, morph, profile, sections, voxels};
+use super::figures::{flower, meridian, morph, print, profile, sections, voxels};
 use super::text::{escape, number};
 use super::{key_numbers, tables};
 use crate::design::Design;
@@ -44,6 +44,7 @@ pub fn html(
         Some(flower::figure(design)),
         Some(voxels::figure(design)),
         Some(sections::figure(design)),
+        print::figure(design),
         morph::figure(design)?,
     ];
     for (i, figure) in figures.iter().flatten().enumerate() {

@@ -7,7 +7,7 @@ use super::text::{escape, number, whole};
 use crate::design::Design;
 use crate::input::DesignInput;
 use crate::input::parameters::PARAMETERS;
-use crate::materials::Material;
+use crate::materials::{Material, assumptions};
 use crate::modulus_field::ModulusField;
 
 /// Entries of a list that are written out.
@@ -80,13 +80,14 @@ pub fn modulus(field: Option<&ModulusField>) -> String {
 #[must_use]
 pub fn materials(design: &Design) -> String {
     type Pick = fn(&Material) -> Option<f64>;
-    let columns: [(&str, Pick); 7] = [
+    let columns: [(&str, Pick); 8] = [
         ("E, MPa", |m| Some(m.modulus_mpa)),
         ("ν", |m| Some(m.poisson)),
         ("density, kg/m³", |m| m.density_kg_m3),
         ("conductivity, W/(m K)", |m| m.conductivity_w_mk),
         ("specific heat, J/(kg K)", |m| m.specific_heat_j_kgk),
         ("electrical conductivity, S/m", |m| m.electrical_conductivity_s_m),
+        ("relative permittivity", |m| m.relative_permittivity),
         ("largest strain", |m| m.max_strain),
     ];
     let phases = design.phases().phases();
@@ -95,10 +96,13 @@ pub fn materials(design: &Design) -> String {
     let head: String = columns.iter().map(|(name, _)| format!("<th class=\"n\">{name}</th>")).collect();
     let mut rows = String::new();
     for (i, phase) in phases.iter().enumerate() {
-        let cells: String = columns
-            .iter()
-            .map(|(_, pick)| format!("<td class=\"n\">{}</td>", pick(phase).map_or("–".to_owned(), |v| number(v, 6))))
-            .collect();
+        let assumed = assumptions(phase);
+        let cell = |name: &str, value: Option<f64>| {
+            let mark =
+                if assumed.iter().any(|a| name.starts_with(a.property.describe()[0])) { " (assumed)" } else { "" };
+            format!("<td class=\"n\">{}{mark}</td>", value.map_or("–".to_owned(), |v| number(v, 6)))
+        };
+        let cells: String = columns.iter().map(|(name, pick)| cell(name, pick(phase))).collect();
         rows.push_str(&format!(
             "<tr><th><span class=\"swatch\" style=\"background:{}\"></span>{}</th>{cells}</tr>\n",
             palette::phase(i, phases.len()).hex(),

@@ -55,13 +55,19 @@ fn format_number(value: f64, digits: usize, ending: fn(&str) -> &str) -> String 
     let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
     let exponent: i32 = exponent.parse().unwrap_or(0);
     let text = if value != 0.0 && !(-4..7).contains(&exponent) {
-        let exponent: String = exponent.to_string().chars().map(superscript).collect();
-        format!("{} × 10{exponent}", ending(mantissa))
+        format!("{} × {}", ending(mantissa), power_of_ten(exponent))
     } else {
         let decimals = usize::try_from(digits as i32 - 1 - exponent).unwrap_or(0);
         grouped(ending(&format!("{value:.decimals$}")))
     };
     if text == "-0" { "0".to_owned() } else { text.replace('-', "−") }
+}
+
+/// `10` with an exponent.
+#[must_use]
+pub fn power_of_ten(exponent: i32) -> String {
+    let exponent: String = exponent.to_string().chars().map(superscript).collect();
+    format!("10{exponent}")
 }
 
 /// A whole number for a reader.

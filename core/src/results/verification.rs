@@ -3,10 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
+use serde_json::{Map, Value};
 
 use super::ccx_dat::{NodePrint, Quantity, parse};
 use super::comparison::{MidlinePoint, compare};
 use crate::design::Design;
+use crate::elastica::morph::Guide;
 use crate::error::Error;
 use crate::input::model::{DeckKind, DeckSolver};
 use crate::output::Provenance;
@@ -42,6 +44,7 @@ impl Model {
 
 /// Contents of `verification.json`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Verification {
     /// Version, seed and hash of the design that was verified; a design computed anew has another hash.
     #[serde(flatten)]
@@ -64,6 +67,9 @@ pub struct Verification {
     pub increments: usize,
     /// Iterations over all increments.
     pub iterations: usize,
+    /// What only the solver inside the library tells.
+    #[serde(flatten)]
+    pub embedded: Option<EmbeddedRecord>,
     /// `[s, x, z]` of the deformed mid-line, rim first, seen from the rim.
     pub midline_mm: Vec<MidlinePoint>,
 }
@@ -75,6 +81,44 @@ pub struct SolverRecord {
     pub name: String,
     /// Version.
     pub version: String,
+}
+
+/// What the solver inside the library tells besides.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct EmbeddedRecord {
+    /// Elements of the strip.
+    pub elements: usize,
+    /// Unknown displacements.
+    pub unknowns: usize,
+    /// Residual of the equilibrium, relative to the elements' forces.
+    pub residual: f64,
+    /// The strip would leave this equilibrium by itself.
+    pub unstable_branch: bool,
+    /// Negative eigenvalues of the tangent: directions in which it would.
+    pub negative_eigenvalues: usize,
+    /// What the ends of one spoke are held by.
+    pub reactions: ReactionRecord,
+    /// Largest principal strain of every phase, by its label; of a graded strip there is one of the mixture.
+    pub largest_principal_strain: Map<String, Value>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+/// Reactions of one spoke, in the signs of `summary.thrust` of `design.json`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ReactionRecord {
+    /// Horizontal force at the rim, N.
+    pub rim_horizontal_n: f64,
+    /// Horizontal force at the hub, N; the same in equilibrium.
+    pub hub_horizontal_n: f64,
+    /// Vertical force at the rim, N.
+    pub rim_vertical_n: f64,
+    /// Vertical force at the hub, N.
+    pub hub_vertical_n: f64,
+    /// Moment at the rim, N mm.
+    pub rim_moment_nmm: f64,
+    /// Moment at the hub, N mm.
+    pub hub_moment_nmm: f64,
 }
 
 /// Solves one of a design's decks with CalculiX in `work` and compares the deformed mid-line with the target.
@@ -90,11 +134,7 @@ pub fn verify(
     progress: &dyn Fn(Status) -> bool,
 ) -> Result<Verification, Error> {
     let provenance = Provenance::of(design.input());
-    if design.guide().is_none() {
-        let error =
-            crate::InputError::new("target.shortening", "", "a strip that is only stretched takes no shape to verify");
-        return Err(Error::Input(error.in_file(&folder.join("design.json").display().to_string())));
-    }
+    require_shape(design).map_err(|e| e.in_file(&folder.join("design.json").display().to_string()))?;
     let deck = folder.join(model.deck());
     check_deck(&deck, &provenance)?;
     let run = ccx.run(&deck, work, progress)?;
@@ -112,12 +152,21 @@ pub fn verify(
         seconds: run.seconds,
         increments: run.increments,
         iterations: run.iterations,
+        embedded: None,
         midline_mm: midline,
     })
 }
 
+/// Refuses a design that takes no shape.
+pub(super) fn require_shape(design: &Design) -> Result<&Guide, Error> {
+    design.guide().ok_or_else(|| {
+        let problem = "a strip that is only stretched takes no shape to verify";
+        Error::Input(crate::InputError::new("target.shortening", "", problem))
+    })
+}
+
 /// What the forward model predicts for a model's strip, as a share of the length.
-fn predicted(design: &Design, model: Model) -> Option<f64> {
+pub(super) fn predicted(design: &Design, model: Model) -> Option<f64> {
     match model {
         Model::Voxel => design.predicted_error(),
         Model::Graded => {

@@ -14,6 +14,7 @@ use nalgebra::{Matrix2, Matrix3, SymmetricEigen, Vector2, Vector3};
 
 use super::error::TargetError;
 use super::triangle_mesh::Welder;
+use crate::progress::{Cancelled, stops_at};
 
 /// The axis about which a mesh is taken to be a surface of revolution.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -76,22 +77,26 @@ impl Frame {
 }
 
 /// A mesh with equal vertices joined, moved to its centroid and scaled to a mean square extent of 1.
-#[derive(Debug, Clone)]
-pub(super) struct Surface {
+#[derive(Clone)]
+pub(super) struct Surface<'a> {
     pub vertices: Vec<Vector3<f64>>,
     pub triangles: Vec<[u32; 3]>,
     /// What to add, after multiplying by `size`, to get back to the mesh's own coordinates.
     pub centre: Vector3<f64>,
     pub size: f64,
+    pub cancelled: Cancelled<'a>,
 }
 
-impl Surface {
+impl<'a> Surface<'a> {
     /// Takes a mesh that passed the checks; triangles without area are left out.
-    pub fn new(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<Self, TargetError> {
+    pub fn new(vertices: &[[f64; 3]], triangles: &[[u32; 3]], cancelled: Cancelled<'a>) -> Result<Self, TargetError> {
         let mut welder = Welder::default();
         let mut indices = vec![u32::MAX; vertices.len()];
         let mut joined = Vec::with_capacity(triangles.len());
-        for triangle in triangles {
+        for (i, triangle) in triangles.iter().enumerate() {
+            if stops_at(i, cancelled) {
+                return Err(TargetError::Cancelled);
+            }
             let mut corners = [0; 3];
             for (corner, &i) in corners.iter_mut().zip(triangle) {
                 let (Some(index), Some(&position)) = (indices.get_mut(i as usize), vertices.get(i as usize)) else {
@@ -112,11 +117,12 @@ impl Surface {
             triangles: joined,
             centre: Vector3::zeros(),
             size: 1.0,
+            cancelled,
         };
         let empty = TargetError::EmptyMesh { vertices: vertices.len(), triangles: 0 };
         // Once to come near the origin and to a size of one, once more for the digits lost on the way.
         for _ in 0..2 {
-            let (area, centroid, moments) = surface.moments();
+            let (area, centroid, moments) = surface.moments()?;
             let size = (moments.trace() / area).sqrt();
             if !(area > 0.0 && size.is_finite() && size > 0.0) {
                 return Err(empty);
@@ -128,31 +134,51 @@ impl Surface {
         Ok(surface)
     }
 
+    /// Whether work goes on.
+    ///
+    /// # Errors
+    ///
+    /// [`TargetError::Cancelled`].
+    pub fn go_on(&self) -> Result<(), TargetError> {
+        if (self.cancelled)() { Err(TargetError::Cancelled) } else { Ok(()) }
+    }
+
+    /// The corners of every triangle, unless work is cancelled meanwhile.
+    fn for_each_triangle(&self, mut work: impl FnMut([Vector3<f64>; 3])) -> Result<(), TargetError> {
+        for (i, triangle) in self.triangles.iter().enumerate() {
+            if stops_at(i, self.cancelled) {
+                return Err(TargetError::Cancelled);
+            }
+            work(self.corners(triangle));
+        }
+        Ok(())
+    }
+
     pub fn corners(&self, triangle: &[u32; 3]) -> [Vector3<f64>; 3] {
         triangle.map(|i| self.vertices.get(i as usize).copied().unwrap_or_default())
     }
 
     /// Area, centroid and second moments about it. For a triangle
     /// `int p p^T dA = A/12 (sum v_i v_i^T + (sum v_i)(sum v_i)^T)`.
-    fn moments(&self) -> (f64, Vector3<f64>, Matrix3<f64>) {
+    fn moments(&self) -> Result<(f64, Vector3<f64>, Matrix3<f64>), TargetError> {
         let origin = self.vertices.first().copied().unwrap_or_default();
         let (mut area, mut first, mut second) = (0.0, Vector3::zeros(), Matrix3::zeros());
-        for triangle in &self.triangles {
-            let [a, b, c] = self.corners(triangle).map(|p| p - origin);
+        self.for_each_triangle(|corners| {
+            let [a, b, c] = corners.map(|p| p - origin);
             let weight = 0.5 * (b - a).cross(&(c - a)).norm();
             let sum = a + b + c;
             area += weight;
             first += sum * (weight / 3.0);
             let products = a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose();
             second += products * (weight / 12.0);
-        }
+        })?;
         let mean = first / area;
-        (area, origin + mean, second - mean * mean.transpose() * area)
+        Ok((area, origin + mean, second - mean * mean.transpose() * area))
     }
 
     /// Candidates without a given direction, the most trustworthy first.
-    pub fn free_candidates(&self) -> Vec<Frame> {
-        let (_, centroid, moments) = self.moments();
+    pub fn free_candidates(&self) -> Result<Vec<Frame>, TargetError> {
+        let (_, centroid, moments) = self.moments()?;
         let eigen = SymmetricEigen::new(moments);
         let values = eigen.eigenvalues;
         // The axis is the one whose two others are nearest to each other.
@@ -163,18 +189,17 @@ impl Surface {
         });
         let mut frames: Vec<Frame> =
             order.iter().map(|&k| Frame::new(centroid, eigen.eigenvectors.column(k).into())).collect();
-        frames.extend(self.complex_axes());
+        frames.extend(self.complex_axes()?);
         frames.retain(|f| f.direction.iter().chain(f.point.iter()).all(|c| c.is_finite()));
-        frames
+        Ok(frames)
     }
 
     /// Candidates along a given direction: through the centroid, and where the normals pass nearest.
-    pub fn directed_candidates(&self, direction: Vector3<f64>) -> Vec<Frame> {
-        let (_, centroid, _) = self.moments();
+    pub fn directed_candidates(&self, direction: Vector3<f64>) -> Result<Vec<Frame>, TargetError> {
+        let (_, centroid, _) = self.moments()?;
         let frame = Frame::new(centroid, direction);
         let (mut normal, mut right) = (Matrix2::zeros(), Vector2::zeros());
-        for triangle in &self.triangles {
-            let [a, b, c] = self.corners(triangle);
+        self.for_each_triangle(|[a, b, c]| {
             let n = (b - a).cross(&(c - a));
             // ((p - o) x n) . d = 0 with o = centroid + x u + y v; n weighs by twice the area.
             let p = (a + b + c) / 3.0 - centroid;
@@ -183,30 +208,29 @@ impl Surface {
             let weight = 1.0 / n.norm().max(f64::MIN_POSITIVE);
             normal += row * row.transpose() * weight;
             right += row * (p.cross(&n).dot(&frame.direction) * weight);
-        }
+        })?;
         let mut frames = vec![frame];
         if let Some(shift) = normal.lu().solve(&right)
             && shift.iter().all(|x| x.is_finite() && x.abs() < 1e3)
         {
             frames.push(Frame { point: centroid + frame.u * shift.x + frame.v * shift.y, ..frame });
         }
-        frames
+        Ok(frames)
     }
 
     /// The axes of the linear complexes that fit the normals best and second best.
-    fn complex_axes(&self) -> Vec<Frame> {
+    fn complex_axes(&self) -> Result<Vec<Frame>, TargetError> {
         let (mut nn, mut nm, mut mm) = (Matrix3::zeros(), Matrix3::zeros(), Matrix3::zeros());
-        for triangle in &self.triangles {
-            let [a, b, c] = self.corners(triangle);
+        self.for_each_triangle(|[a, b, c]| {
             let n = (b - a).cross(&(c - a));
             let weight = 1.0 / n.norm().max(f64::MIN_POSITIVE);
             let moment = ((a + b + c) / 3.0).cross(&n);
             nn += n * n.transpose() * weight;
             nm += n * moment.transpose() * weight;
             mm += moment * moment.transpose() * weight;
-        }
+        })?;
         // For a given c the best c' is -nn^-1 nm c; what is left is a quadratic form in c.
-        let Some(inverse) = nn.try_inverse() else { return Vec::new() };
+        let Some(inverse) = nn.try_inverse() else { return Ok(Vec::new()) };
         let map = -inverse * nm;
         let left = mm + nm.transpose() * map;
         let eigen = SymmetricEigen::new((left + left.transpose()) * 0.5);
@@ -216,6 +240,6 @@ impl Surface {
             let c: Vector3<f64> = eigen.eigenvectors.column(*k).into();
             Frame::new(c.cross(&(map * c)), c)
         };
-        order.iter().take(2).map(axis).collect()
+        Ok(order.iter().take(2).map(axis).collect())
     }
 }

@@ -30,6 +30,9 @@ pub enum TargetError {
     #[error("{name} is {value}; it must be {allowed}")]
     OutOfRange { name: &'static str, value: f64, allowed: &'static str },
 
+    /// Reading or fitting was cancelled.
+    #[error("cancelled")]
+    Cancelled,
     /// A file that cannot be read.
     #[error("{path} cannot be read: {reason}")]
     Unreadable { path: String, reason: String },

@@ -9,6 +9,7 @@ use super::scale::Span;
 use super::smoothing::Sample;
 use super::spline_curve::SplineMeridian;
 use super::triangle_mesh::check_mesh;
+use crate::progress::{Cancelled, never};
 
 /// A meridian fitted to measured points, scaled and cut so that it runs from the rim to the hub.
 ///
@@ -77,7 +78,8 @@ impl FittedMeridian {
     ///
     /// Lengths out of range; an empty mesh, coordinates that are not finite, indices out of range; an axis that cannot
     /// be found or points the wrong way; vertices more than 2 % of the rim radius (rms) off a surface of revolution;
-    /// fewer than 5 rings; a meridian that ends outside the hub radius.
+    /// fewer than 5 rings; a meridian that ends outside the hub radius. Of more than half a million vertices on the outer
+    /// surface as many, evenly chosen, are fitted and measured.
     pub fn from_mesh(
         vertices: &[[f64; 3]],
         triangles: &[[u32; 3]],
@@ -85,8 +87,24 @@ impl FittedMeridian {
         length_mm: f64,
         hub_radius_mm: f64,
     ) -> Result<Self, TargetError> {
+        Self::from_mesh_unless(vertices, triangles, axis, length_mm, hub_radius_mm, &never)
+    }
+
+    /// As [`Self::from_mesh`], but gives up once `cancelled` says so: millions of triangles take seconds.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Self::from_mesh`], and [`TargetError::Cancelled`].
+    pub fn from_mesh_unless(
+        vertices: &[[f64; 3]],
+        triangles: &[[u32; 3]],
+        axis: Axis,
+        length_mm: f64,
+        hub_radius_mm: f64,
+        cancelled: Cancelled<'_>,
+    ) -> Result<Self, TargetError> {
         let span = Span::new(length_mm, hub_radius_mm)?;
-        check_mesh(vertices, triangles)?;
-        revolution::meridian(vertices, triangles, axis, span)
+        check_mesh(vertices, triangles, cancelled)?;
+        revolution::meridian(vertices, triangles, axis, span, cancelled)
     }
 }

@@ -22,7 +22,7 @@ pub use axis::Axis;
 pub use ellipse::EllipseMeridian;
 pub use error::{Row, TargetError};
 pub use fitted::FittedMeridian;
-pub use mesh_file::{MAX_MESH_BYTES, MeshFormat, read_mesh, read_mesh_file};
+pub use mesh_file::{MAX_MESH_BYTES, MeshFormat, read_mesh, read_mesh_file, read_mesh_file_unless, read_mesh_unless};
 pub use points::{MAX_POINTS, MAX_POINTS_BYTES, PointTable, read_points, read_points_file};
 pub use polynomial::PolynomialMeridian;
 pub use resolve::{FitReport, Target, resolve};

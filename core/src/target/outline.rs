@@ -9,7 +9,9 @@
 use std::collections::HashMap;
 
 use super::axis::{Frame, Surface};
+use super::error::TargetError;
 use super::ordering::{distance, extent, scatter};
+use crate::progress::stops_at;
 
 /// Turn that ends a piece, degrees: a belly at 120 degrees on a flat base still has it.
 const CORNER_DEG: f64 = 55.0;
@@ -25,9 +27,8 @@ const MAX_CORNERS: usize = 256;
 const SHORT: f64 = 0.4;
 
 /// A mesh in the coordinates of an axis.
-#[derive(Debug)]
 pub(super) struct Cylindrical<'a> {
-    pub surface: &'a Surface,
+    pub surface: &'a Surface<'a>,
     /// Coordinates across the axis and along it.
     pub local: Vec<[f64; 3]>,
     /// `[rho, z]`.
@@ -45,17 +46,34 @@ pub(super) struct Outline {
 }
 
 impl<'a> Cylindrical<'a> {
-    pub fn new(surface: &'a Surface, frame: &Frame) -> Self {
-        let local: Vec<[f64; 3]> = surface.vertices.iter().map(|p| frame.local(p)).collect();
-        let plane = local.iter().map(|[x, y, z]| [x.hypot(*y), *z]).collect();
-        Self { surface, local, plane }
+    /// The mesh seen from an axis.
+    ///
+    /// # Errors
+    ///
+    /// [`TargetError::Cancelled`].
+    pub fn new(surface: &'a Surface<'a>, frame: &Frame) -> Result<Self, TargetError> {
+        let mut local = Vec::with_capacity(surface.vertices.len());
+        let mut plane = Vec::with_capacity(surface.vertices.len());
+        for (i, p) in surface.vertices.iter().enumerate() {
+            if stops_at(i, surface.cancelled) {
+                return Err(TargetError::Cancelled);
+            }
+            let [x, y, z] = frame.local(p);
+            local.push([x, y, z]);
+            plane.push([x.hypot(y), z]);
+        }
+        Ok(Self { surface, local, plane })
     }
 
     /// The outline with the longest outer piece among `count` slices.
-    pub fn outline(&self, count: usize) -> Option<Outline> {
+    ///
+    /// # Errors
+    ///
+    /// [`TargetError::Cancelled`].
+    pub fn outline(&self, count: usize) -> Result<Option<Outline>, TargetError> {
         let triangles = &self.surface.triangles;
         // Through triangles, so that a part of a turn is met; the steps are uneven to avoid meeting one ring again.
-        (0..count)
+        let directions = (0..count)
             .filter_map(|i| triangles.get((((i as f64 + 0.5) * 0.618_034).fract() * triangles.len() as f64) as usize))
             .filter_map(|triangle| {
                 let sum = triangle
@@ -64,13 +82,21 @@ impl<'a> Cylindrical<'a> {
                     .fold([0.0; 2], |s, p| [s[0] + p[0], s[1] + p[1]]);
                 let norm = sum[0].hypot(sum[1]);
                 (norm > 0.0).then(|| [sum[0] / norm, sum[1] / norm])
-            })
-            .filter_map(|across| Outline::new(self.chains(across)))
-            .max_by(|a, b| a.length.total_cmp(&b.length))
+            });
+        let mut longest: Option<Outline> = None;
+        for across in directions {
+            let found = Outline::new(self.chains(across)?);
+            // Of equals the last one, as `max_by` takes it.
+            longest = match (longest, found) {
+                (Some(old), Some(new)) if new.length.total_cmp(&old.length).is_lt() => Some(old),
+                (old, new) => new.or(old),
+            };
+        }
+        Ok(longest)
     }
 
     /// Chains of points where the half-plane from the axis towards `across` cuts the mesh.
-    fn chains(&self, across: [f64; 2]) -> Vec<Vec<[f64; 2]>> {
+    fn chains(&self, across: [f64; 2]) -> Result<Vec<Vec<[f64; 2]>>, TargetError> {
         let side: Vec<f64> = self.local.iter().map(|p| across[0] * p[1] - across[1] * p[0]).collect();
         let forward = |i: u32| self.local.get(i as usize).map_or(0.0, |p| across[0] * p[0] + across[1] * p[1]);
         let side_of = |i: u32| side.get(i as usize).copied().unwrap_or(0.0);
@@ -91,7 +117,10 @@ impl<'a> Cylindrical<'a> {
                 nodes.len() - 1
             }))
         };
-        for &[a, b, c] in &self.surface.triangles {
+        for (i, &[a, b, c]) in self.surface.triangles.iter().enumerate() {
+            if stops_at(i, self.surface.cancelled) {
+                return Err(TargetError::Cancelled);
+            }
             let [sa, sb, sc] = [a, b, c].map(|i| side_of(i) >= 0.0);
             if sa == sb && sb == sc {
                 continue;
@@ -114,7 +143,7 @@ impl<'a> Cylindrical<'a> {
             }
         }
         links.resize(nodes.len(), Vec::new());
-        walk(&nodes, &links)
+        Ok(walk(&nodes, &links))
     }
 }
 

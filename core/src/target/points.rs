@@ -16,6 +16,7 @@ use std::path::Path;
 
 use super::error::{Row, TargetError};
 use super::ordering;
+use crate::progress::{Cancelled, Watched, never};
 
 /// Most rows a table may have.
 pub const MAX_POINTS: usize = 2_000_000;
@@ -100,16 +101,19 @@ pub fn read_points(bytes: &[u8]) -> Result<PointTable, TargetError> {
 ///
 /// A file that cannot be opened or is larger than [`MAX_POINTS_BYTES`], and what [`read_points`] refuses.
 pub fn read_points_file(path: &Path) -> Result<PointTable, TargetError> {
-    read_points(&read_limited(path, check_size)?)
+    read_points(&read_limited(path, check_size, &never)?)
 }
 
 /// The bytes of a file whose size passes `check`; a file that grows meanwhile is read up to the size checked, plus one.
 pub(super) fn read_limited(
     path: &Path,
     check: impl Fn(u64) -> Result<(), TargetError>,
+    cancelled: Cancelled<'_>,
 ) -> Result<Vec<u8>, TargetError> {
-    let unreadable =
-        |error: std::io::Error| TargetError::Unreadable { path: path.display().to_string(), reason: error.to_string() };
+    let unreadable = |error: std::io::Error| match cancelled() {
+        true => TargetError::Cancelled,
+        false => TargetError::Unreadable { path: path.display().to_string(), reason: error.to_string() },
+    };
     let file = File::open(path).map_err(unreadable)?;
     let metadata = file.metadata().map_err(unreadable)?;
     if !metadata.is_file() {
@@ -120,7 +124,8 @@ pub(super) fn read_limited(
     }
     check(metadata.len())?;
     let mut bytes = Vec::new();
-    file.take(metadata.len().saturating_add(1)).read_to_end(&mut bytes).map_err(unreadable)?;
+    let most = metadata.len().saturating_add(1);
+    Watched::new(file.take(most), cancelled).read_to_end(&mut bytes).map_err(unreadable)?;
     check(bytes.len() as u64)?;
     Ok(bytes)
 }

@@ -19,6 +19,7 @@ use super::outline::{Cylindrical, Outline};
 use super::profile::{Profile, distance_to, rim_parameter};
 use super::scale::Span;
 use super::smoothing::{PiecewiseCurve, Sample};
+use crate::progress::Cancelled;
 
 /// Largest accepted rms distance from the surface of revolution, share of the rim radius.
 const MAX_SHARE: f64 = 0.02;
@@ -28,6 +29,8 @@ const GOOD_SHARE: f64 = 1e-3;
 const MAX_GAP_DEG: f64 = 150.0;
 /// Vertices the axis is looked for with, at most.
 const SEARCH_VERTICES: usize = 20_000;
+/// Vertices the profile is fitted to and held against, at most: a pass over them can be cancelled before and after it only.
+const FINAL_VERTICES: usize = 500_000;
 /// Slices tried in the search and in the end.
 const SEARCH_SLICES: usize = 4;
 const FINAL_SLICES: usize = 12;
@@ -78,15 +81,16 @@ pub(super) fn meridian(
     triangles: &[[u32; 3]],
     axis: Axis,
     span: Span,
+    cancelled: Cancelled<'_>,
 ) -> Result<FittedMeridian, TargetError> {
     let direction = axis.direction()?;
-    let surface = Surface::new(vertices, triangles)?;
+    let surface = Surface::new(vertices, triangles, cancelled)?;
     let sense = if matches!(axis, Axis::Vector(_)) { Sense::Given } else { Sense::WideEndBelow };
     let frame = match direction {
         Some(direction) => directed(&surface, direction, sense)?,
         None => free(&surface)?,
     };
-    let last = attempt(&surface, &frame, sense, FINAL_SLICES, usize::MAX, Some(span))?;
+    let last = attempt(&surface, &frame, sense, FINAL_SLICES, FINAL_VERTICES, Some(span))?;
     if last.share.is_nan() || last.share > MAX_SHARE {
         return Err(TargetError::NotARevolution {
             share_percent: 100.0 * last.share,
@@ -109,10 +113,11 @@ pub(super) fn meridian(
 fn directed(surface: &Surface, direction: nalgebra::Vector3<f64>, sense: Sense) -> Result<Frame, TargetError> {
     let mut best: Option<Attempt> = None;
     let mut problem = TargetError::AxisUndetermined;
-    for frame in surface.directed_candidates(direction) {
+    for frame in surface.directed_candidates(direction)? {
         match refined(surface, &frame, sense, 2) {
             Ok(found) if best.as_ref().is_none_or(|b| found.share < b.share) => best = Some(found),
             Ok(_) => {}
+            Err(TargetError::Cancelled) => return Err(TargetError::Cancelled),
             Err(error) => problem = error,
         }
     }
@@ -123,7 +128,7 @@ fn directed(surface: &Surface, direction: nalgebra::Vector3<f64>, sense: Sense) 
 fn free(surface: &Surface) -> Result<Frame, TargetError> {
     let mut best: Option<Attempt> = None;
     let mut problem = TargetError::AxisUndetermined;
-    for frame in surface.free_candidates() {
+    for frame in surface.free_candidates()? {
         match refined(surface, &frame, Sense::WideEndBelow, 4) {
             // Later candidates are less trustworthy: they must be clearly better.
             Ok(found) if largest_gap_deg(surface, &found) <= MAX_GAP_DEG => {
@@ -132,6 +137,7 @@ fn free(surface: &Surface) -> Result<Frame, TargetError> {
                 }
             }
             Ok(_) => {}
+            Err(TargetError::Cancelled) => return Err(TargetError::Cancelled),
             Err(error) => problem = error,
         }
         if best.as_ref().is_some_and(|b| b.share < GOOD_SHARE) {
@@ -149,6 +155,7 @@ fn refined(surface: &Surface, frame: &Frame, sense: Sense, freedoms: usize) -> R
         let Some(next) = step(surface, &best, freedoms) else { break };
         match search(&next) {
             Ok(found) if found.share < 0.999 * best.share => best = found,
+            Err(TargetError::Cancelled) => return Err(TargetError::Cancelled),
             _ => break,
         }
     }
@@ -165,24 +172,26 @@ fn attempt(
     span: Option<Span>,
 ) -> Result<Attempt, TargetError> {
     let mut frame = *frame;
-    let mut cylindrical = Cylindrical::new(surface, &frame);
+    let mut cylindrical = Cylindrical::new(surface, &frame)?;
     let no_outline = TargetError::TooFewRings { found: 0, needed: MIN_POINTS };
-    let mut outline = cylindrical.outline(slices).ok_or(no_outline.clone())?;
+    let mut outline = cylindrical.outline(slices)?.ok_or(no_outline.clone())?;
     if outline.upside_down {
         if sense == Sense::Given {
             let (lower, upper) = outline.end_radii();
             return Err(TargetError::AxisReversed { lower: lower * surface.size, upper: upper * surface.size });
         }
         frame = Frame::new(frame.point, -frame.direction);
-        cylindrical = Cylindrical::new(surface, &frame);
-        outline = cylindrical.outline(slices).ok_or(no_outline)?;
+        cylindrical = Cylindrical::new(surface, &frame)?;
+        outline = cylindrical.outline(slices)?.ok_or(no_outline)?;
     }
     let (vertices, mut samples) = on_outline(&cylindrical, &outline, most_vertices);
     if samples.len() < MIN_VERTICES {
         return Err(TargetError::TooFewVertices { found: samples.len(), needed: MIN_VERTICES });
     }
     let sectors: Vec<u8> = vertices.iter().map(|&i| cylindrical.local.get(i).map_or(0, |p| sector(*p))).collect();
+    surface.go_on()?;
     let first = Profile::fit(grouped(&mut samples, &sectors, None)?, 1, None, &mut samples)?;
+    surface.go_on()?;
     // What lies within the scatter of the lowest vertices is the rim.
     let scatter = root_mean_square(&first, &samples);
     let groups = grouped(&mut samples, &sectors, Some(&first.curve))?;
@@ -192,6 +201,7 @@ fn attempt(
     let (sum, weight) =
         groups.iter().take(rim).fold((0.0, 0.0), |(r, w), s| (r + s.weight * s.position[0], w + s.weight));
     let rim_radius = sum / weight;
+    surface.go_on()?;
     let groups = groups.into_iter().map(|s| Sample { t: s.t - start, ..s }).collect();
     samples.iter_mut().for_each(|s| s.t -= start);
     let mut profile = Profile::fit(groups, rim, span, &mut samples)?;

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use super::error::TargetError;
+use crate::progress::{Cancelled, never, stops_at};
 
 /// Most vertices a mesh may have.
 pub const MAX_VERTICES: usize = 20_000_000;
@@ -26,22 +27,32 @@ impl TriangleMesh {
     /// No triangle; more than [`MAX_VERTICES`] or [`MAX_TRIANGLES`]; a coordinate that is not finite; an index that
     /// names no vertex.
     pub fn check(&self) -> Result<(), TargetError> {
-        check_mesh(&self.vertices, &self.triangles)
+        check_mesh(&self.vertices, &self.triangles, &never)
     }
 }
 
-pub(super) fn check_mesh(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<(), TargetError> {
+pub(super) fn check_mesh(
+    vertices: &[[f64; 3]],
+    triangles: &[[u32; 3]],
+    cancelled: Cancelled<'_>,
+) -> Result<(), TargetError> {
     check_counts(vertices.len() as u64, triangles.len() as u64)?;
     if triangles.is_empty() || vertices.is_empty() {
         return Err(TargetError::EmptyMesh { vertices: vertices.len(), triangles: triangles.len() });
     }
     for (vertex, position) in vertices.iter().enumerate() {
+        if stops_at(vertex, cancelled) {
+            return Err(TargetError::Cancelled);
+        }
         // Fourth powers of coordinates must stay finite too.
         if let Some(&value) = position.iter().find(|c| !c.is_finite() || c.abs() > 1e70) {
             return Err(TargetError::VertexNotFinite { vertex, value });
         }
     }
     for (triangle, corners) in triangles.iter().enumerate() {
+        if stops_at(triangle, cancelled) {
+            return Err(TargetError::Cancelled);
+        }
         if let Some(&index) = corners.iter().find(|&&i| i as usize >= vertices.len()) {
             return Err(TargetError::IndexOutOfRange { triangle, index: u64::from(index), vertices: vertices.len() });
         }

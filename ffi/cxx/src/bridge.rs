@@ -9,7 +9,7 @@ use voxelastica::failure::Failure;
 use voxelastica::flower::PreparedFlower;
 use voxelastica::progress::{Watch, watched};
 use voxelastica::status::Status;
-use voxelastica::{design, input, lists, mesh, outputs, path, profile, voxels};
+use voxelastica::{conduct, design, fabricate, input, lists, mesh, outputs, path, profile, verify, voxels};
 use voxelastica_core::input::files::Format;
 use voxelastica_core::output::{Provenance, Summary};
 use voxelastica_core::surface::SpokeSurface;
@@ -38,9 +38,9 @@ pub mod ffi {
         type CxxFlower;
         type CxxPath;
 
-        fn parse_toml(text: &[u8], file: &[u8], folder: &[u8]) -> Result<Box<CxxInput>>;
-        fn parse_json(text: &[u8], file: &[u8], folder: &[u8]) -> Result<Box<CxxInput>>;
-        fn read(file: &[u8]) -> Result<Box<CxxInput>>;
+        fn parse_toml(text: &[u8], file: &[u8], folder: &[u8], progress: &Progress) -> Result<Box<CxxInput>>;
+        fn parse_json(text: &[u8], file: &[u8], folder: &[u8], progress: &Progress) -> Result<Box<CxxInput>>;
+        fn read(file: &[u8], progress: &Progress) -> Result<Box<CxxInput>>;
         fn validate(self: &CxxInput) -> Result<()>;
         fn json(self: &CxxInput) -> Result<String>;
         fn hash(self: &CxxInput) -> Result<String>;
@@ -62,6 +62,29 @@ pub mod ffi {
         fn phase_centres(self: &CxxDesign, phase: usize) -> Result<Vec<f64>>;
         fn hub(self: &CxxDesign, strip: i32, fraction: f64) -> Result<Vec<f64>>;
         fn write(
+            self: &CxxDesign,
+            folder: &[u8],
+            kinds: u32,
+            allow_large: bool,
+            progress: &Progress,
+        ) -> Result<Vec<String>>;
+
+        fn verify(self: &CxxDesign, model: i32, progress: &Progress) -> Result<String>;
+        fn refine(
+            self: &CxxDesign,
+            iterations: usize,
+            allow_large: bool,
+            progress: &Progress,
+        ) -> Result<Box<CxxDesign>>;
+        fn conduct(
+            self: &CxxDesign,
+            flow: i32,
+            model: i32,
+            shape: i32,
+            regime: i32,
+            progress: &Progress,
+        ) -> Result<String>;
+        fn fabricate(
             self: &CxxDesign,
             folder: &[u8],
             kinds: u32,
@@ -135,24 +158,28 @@ fn told<T: Send>(
 /// An input.
 pub struct CxxInput(DesignInput);
 
-fn parse_toml(text: &[u8], file: &[u8], folder: &[u8]) -> Result<Box<CxxInput>> {
-    parse("toml", Format::Toml, text, file, folder)
+fn parse_toml(text: &[u8], file: &[u8], folder: &[u8], progress: &ffi::Progress) -> Result<Box<CxxInput>> {
+    parse(Format::Toml, text, file, folder, progress)
 }
 
-fn parse_json(text: &[u8], file: &[u8], folder: &[u8]) -> Result<Box<CxxInput>> {
-    parse("json", Format::Json, text, file, folder)
+fn parse_json(text: &[u8], file: &[u8], folder: &[u8], progress: &ffi::Progress) -> Result<Box<CxxInput>> {
+    parse(Format::Json, text, file, folder, progress)
 }
 
-fn parse(name: &str, format: Format, text: &[u8], file: &[u8], folder: &[u8]) -> Result<Box<CxxInput>> {
+fn parse(format: Format, text: &[u8], file: &[u8], folder: &[u8], progress: &ffi::Progress) -> Result<Box<CxxInput>> {
     enter(|| {
+        let name = if format == Format::Toml { "toml" } else { "json" };
         let (text, file) = (checked(name, text)?, checked("file", file)?);
         let folder = Path::new(checked("folder", folder)?);
-        Ok(Box::new(CxxInput(input::parse(text, format, file, folder)?)))
+        Ok(Box::new(CxxInput(told(progress, |watch| input::parse(text, format, file, folder, watch))?)))
     })
 }
 
-fn read(file: &[u8]) -> Result<Box<CxxInput>> {
-    enter(|| Ok(Box::new(CxxInput(DesignInput::read(Path::new(checked("file", file)?))?))))
+fn read(file: &[u8], progress: &ffi::Progress) -> Result<Box<CxxInput>> {
+    enter(|| {
+        let file = Path::new(checked("file", file)?);
+        Ok(Box::new(CxxInput(told(progress, |watch| input::read(file, watch))?)))
+    })
 }
 
 fn checked<'a>(name: &str, text: &'a [u8]) -> std::result::Result<&'a str, Failure> {
@@ -180,14 +207,43 @@ pub struct CxxDesign {
 }
 
 fn compute(input: &CxxInput, allow_large: bool, progress: &ffi::Progress) -> Result<Box<CxxDesign>> {
-    enter(|| {
-        let design = told(progress, |watch| design::compute(&input.0, allow_large, watch))?;
-        let outline = design.profile().flat_outline();
-        Ok(Box::new(CxxDesign { design: Arc::new(design), outline }))
-    })
+    enter(|| Ok(Box::new(CxxDesign::new(told(progress, |watch| design::compute(&input.0, allow_large, watch))?))))
 }
 
 impl CxxDesign {
+    fn new(design: Design) -> Self {
+        let outline = design.profile().flat_outline();
+        Self { design: Arc::new(design), outline }
+    }
+
+    fn verify(&self, model: i32, progress: &ffi::Progress) -> Result<String> {
+        enter(|| {
+            let model = verify::model(model)?;
+            input::to_json(&told(progress, |watch| verify::verify(&self.design, model, watch))?)
+        })
+    }
+
+    fn refine(&self, iterations: usize, allow_large: bool, progress: &ffi::Progress) -> Result<Box<Self>> {
+        enter(|| {
+            let work = |watch: &Watch| verify::refined(&self.design, iterations, allow_large, watch);
+            Ok(Box::new(Self::new(told(progress, work)?)))
+        })
+    }
+
+    fn conduct(&self, flow: i32, model: i32, shape: i32, regime: i32, progress: &ffi::Progress) -> Result<String> {
+        enter(|| {
+            let case = conduct::Case { flow, model, shape, regime };
+            input::to_json(&told(progress, |watch| conduct::conduct(&self.design, case, watch))?)
+        })
+    }
+
+    fn fabricate(&self, folder: &[u8], kinds: u32, allow_large: bool, progress: &ffi::Progress) -> Result<Vec<String>> {
+        enter(|| {
+            let folder = Path::new(checked("folder", folder)?);
+            Ok(told(progress, |watch| fabricate::fabricate(&self.design, folder, kinds, allow_large, watch))?.files)
+        })
+    }
+
     fn summary(&self) -> Result<String> {
         enter(|| input::to_json(&Summary::of(&self.design)))
     }

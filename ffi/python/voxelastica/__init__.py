@@ -27,7 +27,7 @@ they keep what they belong to alive.
 """
 
 from ._call import Progress, VoxelasticaError
-from ._design import OUTPUTS, Design, Profile, Voxels
+from ._design import FABRICATION, OUTPUTS, Design, Profile, Voxels
 from ._geometry import Flower, Mesh, MorphPath, Strip
 from ._library import LIBRARY as _LIBRARY
 from ._lists import materials, parameters, schema
@@ -35,6 +35,7 @@ from ._lists import materials, parameters, schema
 __version__: str = _LIBRARY.voxelastica_version().decode()
 
 __all__ = [
+    "FABRICATION",
     "OUTPUTS",
     "Design",
     "Flower",

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 from enum import IntEnum
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from ._call import Handle, Progress, Watcher, address, call, encoded, make, text, view
 from ._geometry import Flower, Mesh, MorphPath, Strip, strip_number
@@ -31,7 +31,25 @@ OUTPUTS = {
     "tables": 16,
     "report": 32,
     "design": 64,
+    "fabrication": 128,
 }
+
+#: Kinds of files to make a design and their bits, in the order in which they are written.
+FABRICATION = {
+    "stl": 1,
+    "3mf": 2,
+    "print_stack": 4,
+    "gcvf": 8,
+    "dxf": 16,
+    "svg": 32,
+    "assembly": 64,
+    "gltf": 128,
+}
+
+_MODELS = {"voxel": 0, "graded": 1}
+_FLOWS = {"heat": 0, "current": 1}
+_SHAPES = {"flat": 0, "morphed": 1}
+_REGIMES = {"steady": 0, "transient": 1, "both": 2}
 
 
 class _Profile(IntEnum):
@@ -174,12 +192,12 @@ class Design:
         Further options of all ways to make a design: ``allow_large`` (more than 200 million voxels) and ``progress``, a
         function of ``done`` and ``total`` that may return ``False`` to cancel.
         """
-        return cls(_parse("toml", toml, file, folder), **options)
+        return cls(_parse("toml", toml, file, folder, options.get("progress")), **options)
 
     @classmethod
     def from_json(cls, text: str, *, file: str = "", folder: str | os.PathLike[str] = "", **options: Any) -> Design:
         """Computes the design of a JSON text with the TOML's keys, or of a whole ``design.json``."""
-        return cls(_parse("json", text, file, folder), **options)
+        return cls(_parse("json", text, file, folder, options.get("progress")), **options)
 
     @classmethod
     def from_dict(cls, keys: Mapping[str, Any], *, folder: str | os.PathLike[str] = "", **options: Any) -> Design:
@@ -189,7 +207,9 @@ class Design:
     @classmethod
     def from_file(cls, path: str | os.PathLike[str], **options: Any) -> Design:
         """Computes the design of a file: ``.json`` as JSON, anything else as TOML."""
-        return cls(make("input", "input_read", *encoded(os.fspath(path))), **options)
+        with Watcher(options.get("progress")) as callback:
+            source = make("input", "input_read", *encoded(os.fspath(path)), callback, None)
+        return cls(source, **options)
 
     @cached_property
     def input(self) -> dict[str, Any]:
@@ -307,16 +327,66 @@ class Design:
 
         Either all files get their names or none. ``progress`` is told bytes and may return ``False`` to cancel.
         """
-        chosen = list(OUTPUTS) if kinds is None else list(kinds)
-        unknown = [kind for kind in chosen if kind not in OUTPUTS]
-        if unknown:
-            raise ValueError(f"there are no outputs {unknown}; known are {list(OUTPUTS)}")
-        bits = 0
-        for kind in chosen:
-            bits |= OUTPUTS[kind]
+        bits = _bits(OUTPUTS if kinds is None else kinds, OUTPUTS, "outputs")
         place = encoded(os.fspath(folder))
         with Watcher(progress) as callback:
             files = text("design_write", self._handle.number, *place, bits, allow_large, callback, None)
+        return [Path(folder) / file for file in json.loads(files)]
+
+    def verify(
+        self, model: Literal["voxel", "graded"] = "voxel", *, progress: Progress | None = None
+    ) -> dict[str, Any]:
+        """Solves one spoke with the finite elements inside the library: what ``verification.json`` holds, with the errors,
+        the reactions, the strains and the mid-line. Nothing is read or written; ``progress`` is told thousandths."""
+        number = _choice(model, _MODELS, "model")
+        with Watcher(progress) as callback:
+            return json.loads(text("design_verify", self._handle.number, number, callback, None))
+
+    def refine(self, iterations: int = 4, *, allow_large: bool = False, progress: Progress | None = None) -> Design:
+        """The design corrected by what its voxels really do, at most ``iterations`` times: the best one found. Its
+        ``summary["refinement"]`` has the error before and after."""
+        with Watcher(progress) as callback:
+            arguments = (self._handle.number, _index(iterations), allow_large, callback, None)
+            refined = make("design", "design_refine", *arguments)
+        design = object.__new__(type(self))
+        design._handle = refined
+        design._input = make("input", "design_input", refined.number)
+        return design
+
+    def conduct(
+        self,
+        flow: Literal["heat", "current"] = "heat",
+        *,
+        regime: Literal["steady", "transient", "both"] = "steady",
+        model: Literal["voxel", "graded"] = "voxel",
+        shape: Literal["flat", "morphed"] = "flat",
+        progress: Progress | None = None,
+    ) -> dict[str, Any]:
+        """Heat or current through one spoke: a case of ``conduct.json``. Temperatures, currents, times and thresholds are
+        those of the design's table ``conduction``; what rests on assumed material values says so."""
+        case = (
+            _choice(flow, _FLOWS, "flow"),
+            _choice(model, _MODELS, "model"),
+            _choice(shape, _SHAPES, "shape"),
+            _choice(regime, _REGIMES, "regime"),
+        )
+        with Watcher(progress) as callback:
+            return json.loads(text("design_conduct", self._handle.number, *case, callback, None))
+
+    def fabricate(
+        self,
+        folder: str | os.PathLike[str],
+        kinds: Iterable[str] = (),
+        *,
+        allow_large: bool = False,
+        progress: Progress | None = None,
+    ) -> list[Path]:
+        """Writes files to make the design into the folder of the design and returns their paths. ``kinds`` are keys of
+        :data:`FABRICATION`; none stands for those that the design asks for, or where it asks for none, all."""
+        bits = _bits(kinds, FABRICATION, "files to make a design")
+        place = encoded(os.fspath(folder))
+        with Watcher(progress) as callback:
+            files = text("design_fabricate", self._handle.number, *place, bits, allow_large, callback, None)
         return [Path(folder) / file for file in json.loads(files)]
 
     def to_json(self) -> str:
@@ -327,5 +397,27 @@ class Design:
         return f"<Design {self.name!r}: {self.spokes} x {self.input['strips']['length_mm']} mm>"
 
 
-def _parse(kind: str, source: str, file: str, folder: str | os.PathLike[str]) -> Handle:
-    return make("input", f"input_parse_{kind}", *encoded(source), *encoded(file), *encoded(os.fspath(folder)))
+def _bits(kinds: Iterable[str], known: Mapping[str, int], what: str) -> int:
+    chosen = list(kinds)
+    unknown = [kind for kind in chosen if kind not in known]
+    if unknown:
+        raise ValueError(f"there are no {what} {unknown}; known are {list(known)}")
+    bits = 0
+    for kind in chosen:
+        bits |= known[kind]
+    return bits
+
+
+def _choice(word: str, known: Mapping[str, int], name: str) -> int:
+    try:
+        return known[word]
+    except KeyError:
+        raise ValueError(f"{name} must be one of {list(known)}, not {word!r}") from None
+
+
+def _parse(
+    kind: str, source: str, file: str, folder: str | os.PathLike[str], progress: Progress | None = None
+) -> Handle:
+    texts = (*encoded(source), *encoded(file), *encoded(os.fspath(folder)))
+    with Watcher(progress) as callback:
+        return make("input", f"input_parse_{kind}", *texts, callback, None)

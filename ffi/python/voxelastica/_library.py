@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-ABI_VERSION = 1
+ABI_VERSION = 2
 
 _NAMES = {"win32": "voxelastica.dll", "darwin": "libvoxelastica.dylib"}
 
@@ -96,9 +96,9 @@ DECLARATIONS: dict[str, tuple[Any, list[Any]]] = {
     "text_data": (c.c_void_p, [_HANDLE]),
     "text_length": (c.c_size_t, [_HANDLE]),
     "text_free": _FREE,
-    "input_parse_toml": (c.c_int32, [*_TEXT, *_TEXT, *_TEXT, _OUT_HANDLE, _ERROR]),
-    "input_parse_json": (c.c_int32, [*_TEXT, *_TEXT, *_TEXT, _OUT_HANDLE, _ERROR]),
-    "input_read": (c.c_int32, [*_TEXT, _OUT_HANDLE, _ERROR]),
+    "input_parse_toml": (c.c_int32, [*_TEXT, *_TEXT, *_TEXT, *_PROGRESS, _OUT_HANDLE, _ERROR]),
+    "input_parse_json": (c.c_int32, [*_TEXT, *_TEXT, *_TEXT, *_PROGRESS, _OUT_HANDLE, _ERROR]),
+    "input_read": (c.c_int32, [*_TEXT, *_PROGRESS, _OUT_HANDLE, _ERROR]),
     "input_validate": (c.c_int32, [_HANDLE, _ERROR]),
     "input_json": (c.c_int32, _TO_TEXT),
     "input_hash": (c.c_int32, _TO_TEXT),
@@ -120,6 +120,14 @@ DECLARATIONS: dict[str, tuple[Any, list[Any]]] = {
     "design_phase_centres": (c.c_int32, [_HANDLE, c.c_size_t, *_BUFFER, _ERROR]),
     "design_hub": (c.c_int32, [_HANDLE, c.c_int32, c.c_double, *_BUFFER, _ERROR]),
     "design_write": (c.c_int32, [_HANDLE, *_TEXT, c.c_uint32, c.c_bool, *_PROGRESS, _OUT_HANDLE, _ERROR]),
+    "design_verify": (c.c_int32, [_HANDLE, c.c_int32, *_PROGRESS, _OUT_HANDLE, _ERROR]),
+    "design_refine": (c.c_int32, [_HANDLE, c.c_size_t, c.c_bool, *_PROGRESS, _OUT_HANDLE, _ERROR]),
+    "design_input": (c.c_int32, [_HANDLE, _OUT_HANDLE, _ERROR]),
+    "design_conduct": (
+        c.c_int32,
+        [_HANDLE, c.c_int32, c.c_int32, c.c_int32, c.c_int32, *_PROGRESS, _OUT_HANDLE, _ERROR],
+    ),
+    "design_fabricate": (c.c_int32, [_HANDLE, *_TEXT, c.c_uint32, c.c_bool, *_PROGRESS, _OUT_HANDLE, _ERROR]),
     "design_free": _FREE,
     "mesh_new": (
         c.c_int32,

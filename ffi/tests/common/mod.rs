@@ -30,7 +30,18 @@ pub fn parse(toml: &str) -> *mut Input {
     // SAFETY: the text is as long as it says, the outputs are writable.
     let status = unsafe {
         let text = toml.as_ptr().cast();
-        voxelastica_input_parse_toml(text, toml.len(), ptr::null(), 0, ptr::null(), 0, &raw mut input, &raw mut error)
+        voxelastica_input_parse_toml(
+            text,
+            toml.len(),
+            ptr::null(),
+            0,
+            ptr::null(),
+            0,
+            None,
+            ptr::null_mut(),
+            &raw mut input,
+            &raw mut error,
+        )
     };
     assert_eq!(status, Status::Ok, "{}", message(error));
     input

@@ -44,7 +44,7 @@ static const char *SMALL =
 static voxelastica_input *parsed(const char *toml) {
   voxelastica_input *input = NULL;
   voxelastica_error *error = NULL;
-  if (voxelastica_input_parse_toml(TEXT(toml), NULL, 0, NULL, 0, &input, &error) != VOXELASTICA_STATUS_OK) {
+  if (voxelastica_input_parse_toml(TEXT(toml), NULL, 0, NULL, 0, NULL, NULL, &input, &error) != VOXELASTICA_STATUS_OK) {
     fprintf(stderr, "%s\n", voxelastica_error_message(error));
     CHECK(0);
   }
@@ -103,11 +103,11 @@ static void inputs(const char *file) {
   voxelastica_input *input = NULL, *again = NULL;
   voxelastica_text *json = NULL, *one = NULL, *two = NULL;
   voxelastica_error *error = NULL;
-  CHECK(voxelastica_input_read(TEXT(file), &input, &error) == VOXELASTICA_STATUS_OK);
+  CHECK(voxelastica_input_read(TEXT(file), NULL, NULL, &input, &error) == VOXELASTICA_STATUS_OK);
   CHECK(voxelastica_input_validate(input, &error) == VOXELASTICA_STATUS_OK);
   CHECK(voxelastica_input_json(input, &json, &error) == VOXELASTICA_STATUS_OK);
   const char *text = voxelastica_text_data(json);
-  CHECK(voxelastica_input_parse_json(TEXT(text), NULL, 0, NULL, 0, &again, &error) == VOXELASTICA_STATUS_OK);
+  CHECK(voxelastica_input_parse_json(TEXT(text), NULL, 0, NULL, 0, NULL, NULL, &again, &error) == VOXELASTICA_STATUS_OK);
   CHECK(voxelastica_input_hash(input, &one, &error) == VOXELASTICA_STATUS_OK);
   CHECK(voxelastica_input_hash(again, &two, &error) == VOXELASTICA_STATUS_OK);
   CHECK(strcmp(voxelastica_text_data(one), voxelastica_text_data(two)) == 0);
@@ -126,19 +126,19 @@ static void inputs(const char *file) {
   status = voxelastica_input_validate((const voxelastica_input *)(const void *)&status, &error);
   failed(status, VOXELASTICA_STATUS_BAD_HANDLE, error, "input", "not a handle");
   again = NULL;
-  status = voxelastica_input_parse_toml("name = \"\xff\xfe\"", 11, NULL, 0, NULL, 0, &again, &error);
+  status = voxelastica_input_parse_toml("name = \"\xff\xfe\"", 11, NULL, 0, NULL, 0, NULL, NULL, &again, &error);
   failed(status, VOXELASTICA_STATUS_BAD_TEXT, error, "toml", "UTF-8");
-  status = voxelastica_input_parse_toml(NULL, 5, NULL, 0, NULL, 0, &again, &error);
+  status = voxelastica_input_parse_toml(NULL, 5, NULL, 0, NULL, 0, NULL, NULL, &again, &error);
   failed(status, VOXELASTICA_STATUS_NULL_ARGUMENT, error, "toml", "null");
-  status = voxelastica_input_parse_toml(SMALL, SIZE_MAX, NULL, 0, NULL, 0, &again, &error);
+  status = voxelastica_input_parse_toml(SMALL, SIZE_MAX, NULL, 0, NULL, 0, NULL, NULL, &again, &error);
   failed(status, VOXELASTICA_STATUS_WRONG_LENGTH, error, "toml", "long");
-  status = voxelastica_input_parse_toml(TEXT(SMALL), NULL, 0, NULL, 0, NULL, &error);
+  status = voxelastica_input_parse_toml(TEXT(SMALL), NULL, 0, NULL, 0, NULL, NULL, NULL, &error);
   failed(status, VOXELASTICA_STATUS_NULL_ARGUMENT, error, "input", "null");
   const char *wrong = "[target]\nkind = \"hemi-ellipsoid\"\n[strips]\ncuont = 3\n";
-  status = voxelastica_input_parse_toml(TEXT(wrong), TEXT("my.toml"), NULL, 0, &again, &error);
+  status = voxelastica_input_parse_toml(TEXT(wrong), TEXT("my.toml"), NULL, 0, NULL, NULL, &again, &error);
   CHECK(strcmp(voxelastica_error_file(error), "my.toml") == 0 && voxelastica_error_line(error) == 4);
   failed(status, VOXELASTICA_STATUS_INPUT, error, "strips.cuont", "count");
-  status = voxelastica_input_read(TEXT("no/such.toml"), &again, &error);
+  status = voxelastica_input_read(TEXT("no/such.toml"), NULL, NULL, &again, &error);
   CHECK(strcmp(voxelastica_error_file(error), "no/such.toml") == 0);
   failed(status, VOXELASTICA_STATUS_INPUT, error, "", "no such file");
   CHECK(again == NULL);
@@ -345,6 +345,80 @@ static void designs(const char *folder) {
   voxelastica_input_free(input);
 }
 
+/* Solving, correcting, conducting and making: everything that takes longer than a design. */
+static void analyses(const char *folder) {
+  voxelastica_error *error = NULL;
+  voxelastica_design *design = NULL, *refined = NULL;
+  voxelastica_input *again = NULL;
+  voxelastica_text *text = NULL;
+  int told = 0;
+  voxelastica_input *input = parsed(
+    "[target]\n"
+    "kind = \"hemi-ellipsoid\"\n"
+    "[strips]\n"
+    "count = 6\n"
+    "length_mm = 20.0\n"
+    "hub_radius_mm = 3.0\n"
+    "thickness_mm = 2.0\n"
+    "[materials]\n"
+    "phases = [\"a\", \"b\"]\n"
+    "[[materials.custom]]\n"
+    "name = \"a\"\n"
+    "modulus_mpa = 3.0\n"
+    "poisson = 0.3\n"
+    "density_kg_m3 = 1400.0\n"
+    "conductivity_w_mk = 0.3\n"
+    "specific_heat_j_kgk = 1100.0\n"
+    "[[materials.custom]]\n"
+    "name = \"b\"\n"
+    "modulus_mpa = 12.0\n"
+    "poisson = 0.3\n"
+    "density_kg_m3 = 1300.0\n"
+    "conductivity_w_mk = 2.0\n"
+    "specific_heat_j_kgk = 1200.0\n"
+    "[voxels]\n"
+    "size_mm = 1.0\n");
+  CHECK(voxelastica_design_compute(input, false, NULL, NULL, &design, &error) == VOXELASTICA_STATUS_OK);
+  CHECK(voxelastica_design_verify(design, VOXELASTICA_SOLVED_MODEL_VOXEL, go_on, &told, &text, &error) == 0);
+  CHECK(told >= 1 && strstr(voxelastica_text_data(text), "\"max_error_percent\"") != NULL);
+  voxelastica_text_free(text);
+  voxelastica_status status = voxelastica_design_verify(design, 2, NULL, NULL, &text, &error);
+  failed(status, VOXELASTICA_STATUS_OUT_OF_RANGE, error, "model", "voxelastica_solved_model");
+  status = voxelastica_design_verify(design, 0, stop, &told, &text, &error);
+  failed(status, VOXELASTICA_STATUS_CANCELLED, error, "", "cancelled");
+
+  CHECK(voxelastica_design_refine(design, 1, false, go_on, &told, &refined, &error) == VOXELASTICA_STATUS_OK);
+  CHECK(voxelastica_design_input(refined, &again, &error) == VOXELASTICA_STATUS_OK);
+  CHECK(voxelastica_input_json(again, &text, &error) == VOXELASTICA_STATUS_OK);
+  CHECK(strstr(voxelastica_text_data(text), "\"refine\"") != NULL);
+  voxelastica_text_free(text);
+  voxelastica_input_free(again);
+  voxelastica_design_free(refined);
+  status = voxelastica_design_refine(design, 0, false, NULL, NULL, &refined, &error);
+  failed(status, VOXELASTICA_STATUS_OUT_OF_RANGE, error, "iterations", "1");
+
+  CHECK(voxelastica_design_conduct(design, VOXELASTICA_FLOW_HEAT, VOXELASTICA_SOLVED_MODEL_VOXEL,
+                                   VOXELASTICA_CONDUCT_SHAPE_MORPHED, VOXELASTICA_REGIME_STEADY, go_on, &told, &text,
+                                   &error) == VOXELASTICA_STATUS_OK);
+  CHECK(strstr(voxelastica_text_data(text), "\"effective_conductivity\"") != NULL);
+  voxelastica_text_free(text);
+  status = voxelastica_design_conduct(design, 2, 0, 0, 0, NULL, NULL, &text, &error);
+  failed(status, VOXELASTICA_STATUS_OUT_OF_RANGE, error, "flow", "voxelastica_flow");
+  status = voxelastica_design_conduct(design, VOXELASTICA_FLOW_CURRENT, 0, 0, 0, NULL, NULL, &text, &error);
+  CHECK(status == VOXELASTICA_STATUS_INPUT && strstr(voxelastica_error_message(error), "conductivity") != NULL);
+  voxelastica_error_free(error);
+  error = NULL;
+
+  CHECK(voxelastica_design_fabricate(design, TEXT(folder), VOXELASTICA_FABRICATION_SVG | VOXELASTICA_FABRICATION_STL,
+                                     false, go_on, &told, &text, &error) == VOXELASTICA_STATUS_OK);
+  CHECK(strstr(voxelastica_text_data(text), "fabrication/") != NULL);
+  voxelastica_text_free(text);
+  status = voxelastica_design_fabricate(design, TEXT(folder), 256, false, NULL, NULL, NULL, &error);
+  failed(status, VOXELASTICA_STATUS_OUT_OF_RANGE, error, "kinds", "voxelastica_fabrication");
+  voxelastica_design_free(design);
+  voxelastica_input_free(input);
+}
+
 int main(int argc, char **argv) {
   if (argc != 3) {
     fprintf(stderr, "usage: surface DESIGN.toml FOLDER\n");
@@ -353,6 +427,7 @@ int main(int argc, char **argv) {
   texts_and_lists();
   inputs(argv[1]);
   designs(argv[2]);
+  analyses(argv[2]);
   CHECK(voxelastica_live_objects() == 0);
   CHECK(voxelastica_error_message(NULL) == NULL && voxelastica_error_line(NULL) == 0);
   CHECK(voxelastica_error_free(NULL) == VOXELASTICA_STATUS_OK && voxelastica_text_free(NULL) == VOXELASTICA_STATUS_OK);

@@ -127,6 +127,17 @@ static void designs(const char *folder) {
   failed(Status::Output, "", "/dev/null", [&] { design.write("/dev/null/x", output::Tables); });
   failed(Status::OutOfRange, "kinds", "voxelastica_output", [&] { design.write(folder, 0); });
 
+  const auto small = Design(Input::from_toml(SMALL));
+  CHECK(small.verify().find("\"midline_mm\"") != std::string::npos);
+  CHECK(small.refine(1).json().find("\"refine\"") != std::string::npos);
+  CHECK(!small.fabricate(folder, fabrication::Svg).empty());
+  failed(Status::OutOfRange, "model", "voxelastica_solved_model", [&] { small.verify(static_cast<SolvedModel>(7)); });
+  failed(Status::OutOfRange, "iterations", "1", [&] { small.refine(0); });
+  failed(Status::OutOfRange, "kinds", "voxelastica_fabrication", [&] { small.fabricate(folder, 1u << 20); });
+  failed(Status::Input, "materials.phases", "conductivity", [&] { small.conduct(Flow::Heat); });
+  failed(Status::Cancelled, "", "cancelled",
+         [&] { small.verify(SolvedModel::Voxel, [](std::uint64_t, std::uint64_t) { return false; }); });
+
   // Several threads read one design; what they get is the same.
   std::array<double, 4> sums{};
   std::array<std::thread, 4> threads;

@@ -11,7 +11,7 @@ int main(int argc, char **argv) {
   if (argc != 3) {
     return 2;
   }
-  voxelastica_status status = voxelastica_input_read(argv[1], strlen(argv[1]), &input, &error);
+  voxelastica_status status = voxelastica_input_read(argv[1], strlen(argv[1]), NULL, NULL, &input, &error);
   if (status == VOXELASTICA_STATUS_OK) {
     status = voxelastica_design_compute(input, false, NULL, NULL, &design, &error);
   }

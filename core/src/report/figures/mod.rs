@@ -3,6 +3,7 @@
 pub mod flower;
 pub mod meridian;
 pub mod morph;
+pub mod print;
 pub mod profile;
 pub mod sections;
 pub mod voxels;

@@ -4,10 +4,11 @@
 //! looked up here with checks. Read are the triangles, strips and fans of every node of the default scene.
 
 use std::collections::HashMap;
+use std::io::BufReader;
 use std::path::{Component, Path, PathBuf};
 
 use base64::Engine;
-use gltf::Gltf;
+use gltf::Glb;
 use gltf::json::accessor::{ComponentType, GenericComponentType, Type};
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
@@ -15,13 +16,14 @@ use gltf::json::{Accessor, Index, Node, Root};
 use nalgebra::{Matrix3, Matrix4, Quaternion, UnitQuaternion, Vector3};
 
 use super::{BufferReader, shortened};
+use crate::progress::{Cancelled, Watched, stops_at};
 use crate::target::error::TargetError;
 use crate::target::triangle_mesh::{TriangleMesh, check_counts};
 
 /// Required extensions that change neither positions nor indices, or only the types of their numbers.
 const HARMLESS: [&str; 3] = ["KHR_materials", "KHR_texture", "KHR_mesh_quantization"];
 
-pub(super) fn read(bytes: &[u8], buffers: BufferReader) -> Result<TriangleMesh, TargetError> {
+pub(super) fn read(bytes: &[u8], buffers: BufferReader, cancelled: Cancelled<'_>) -> Result<TriangleMesh, TargetError> {
     // The crate subtracts the header's 12 bytes from the declared length unchecked.
     if bytes.starts_with(b"glTF") {
         let length = bytes.get(8..12).and_then(|b| b.try_into().ok()).map_or(0, u32::from_le_bytes);
@@ -34,8 +36,12 @@ pub(super) fn read(bytes: &[u8], buffers: BufferReader) -> Result<TriangleMesh, 
             });
         }
     }
-    let gltf = Gltf::from_slice_without_validation(bytes).map_err(|error| refused(shortened(&error.to_string())))?;
-    let root = gltf.document.as_json();
+    let damaged = |error: &dyn std::fmt::Display| refused(shortened(&error.to_string()));
+    // Borrowed: the binary part may be as long as the file.
+    let glb = if bytes.starts_with(b"glTF") { Some(Glb::from_slice(bytes).map_err(|e| damaged(&e))?) } else { None };
+    let json = BufReader::new(Watched::new(glb.as_ref().map_or(bytes, |glb| &*glb.json), cancelled));
+    let root: Root = serde_json::from_reader(json).map_err(|e| damaged(&e))?;
+    let root = &root;
     let harmless = |name: &str| HARMLESS.iter().any(|start| name.starts_with(start));
     if let Some(name) = root.extensions_required.iter().find(|name| !harmless(name)) {
         return Err(refused(format!(
@@ -45,7 +51,8 @@ pub(super) fn read(bytes: &[u8], buffers: BufferReader) -> Result<TriangleMesh, 
     }
     let mut reader = Reader {
         root,
-        blob: gltf.blob.as_deref(),
+        blob: glb.as_ref().and_then(|glb| glb.bin.as_deref()),
+        cancelled,
         read: buffers,
         buffers: HashMap::new(),
         mesh: TriangleMesh::default(),
@@ -90,6 +97,7 @@ fn percent_decoded(text: &str) -> Option<String> {
 struct Reader<'a> {
     root: &'a Root,
     blob: Option<&'a [u8]>,
+    cancelled: Cancelled<'a>,
     read: BufferReader<'a>,
     buffers: HashMap<usize, Vec<u8>>,
     mesh: TriangleMesh,
@@ -216,7 +224,7 @@ impl<'a> Reader<'a> {
         let offset = accessor.byte_offset.unwrap_or_default().0;
         let (start, held) = (view.byte_offset.unwrap_or_default().0, view.byte_length.0);
         let normalized = accessor.normalized;
-        let count = accessor.count.0;
+        let (count, cancelled) = (accessor.count.0, self.cancelled);
         let buffer = self.buffer(view.buffer.value())?;
         let view_bytes = usize::try_from(start)
             .ok()
@@ -236,7 +244,10 @@ impl<'a> Reader<'a> {
         }
         let mut numbers = Vec::with_capacity(count as usize * components);
         let elements = view_bytes.get(offset as usize..).unwrap_or_default().chunks(stride.max(1) as usize);
-        for bytes in elements.take(count as usize) {
+        for (i, bytes) in elements.take(count as usize).enumerate() {
+            if stops_at(i, cancelled) {
+                return Err(TargetError::Cancelled);
+            }
             let parts = bytes.chunks_exact(component.size()).take(components);
             numbers.extend(parts.filter_map(|part| number(part, component, normalized)));
         }
@@ -253,7 +264,7 @@ impl<'a> Reader<'a> {
         };
         if !self.buffers.contains_key(&index) {
             let bytes = match uri.strip_prefix("data:") {
-                Some(data) => embedded(data)?,
+                Some(data) => embedded(data, self.cancelled)?,
                 None => (self.read)(uri)?,
             };
             let total = self.buffers.values().map(|b| b.len() as u64).sum::<u64>() + bytes.len() as u64;
@@ -268,11 +279,28 @@ fn missing(what: &str, index: usize) -> TargetError {
     refused(format!("it refers to {what} {index}, which it has not"))
 }
 
-fn embedded(data: &str) -> Result<Vec<u8>, TargetError> {
+/// Letters decoded between two questions whether to stop: a multiple of four, base64's group.
+const DECODED: usize = 1 << 20;
+
+fn embedded(data: &str, cancelled: Cancelled<'_>) -> Result<Vec<u8>, TargetError> {
     let refused = |reason: String| TargetError::BufferUri { uri: format!("data:{}...", shortened(data)), reason };
     let (_, text) =
         data.split_once(";base64,").ok_or_else(|| refused(String::from("only data embedded as base64 are read")))?;
-    base64::engine::general_purpose::STANDARD.decode(text).map_err(|error| refused(error.to_string()))
+    let mut bytes = Vec::with_capacity(text.len() / 4 * 3);
+    let mut pieces = text.as_bytes().chunks(DECODED).peekable();
+    while let Some(piece) = pieces.next() {
+        if cancelled() {
+            return Err(TargetError::Cancelled);
+        }
+        // Padding may only end the last piece.
+        if pieces.peek().is_some() && piece.contains(&b'=') {
+            return Err(refused(String::from("padding stands within the base64 data")));
+        }
+        base64::engine::general_purpose::STANDARD
+            .decode_vec(piece, &mut bytes)
+            .map_err(|error| refused(error.to_string()))?;
+    }
+    Ok(bytes)
 }
 
 fn local_transform(node: &Node) -> Matrix4<f64> {

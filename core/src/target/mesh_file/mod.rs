@@ -11,7 +11,8 @@ use std::path::Path;
 
 use super::error::TargetError;
 use super::points::read_limited;
-use super::triangle_mesh::TriangleMesh;
+use super::triangle_mesh::{TriangleMesh, check_mesh};
+use crate::progress::{Cancelled, never};
 
 /// Most bytes a mesh file, with what it refers to, may have.
 pub const MAX_MESH_BYTES: u64 = 1 << 30;
@@ -58,12 +59,26 @@ impl MeshFormat {
 ///
 /// More than [`MAX_MESH_BYTES`]; bytes that are not of the format or cut short; what [`TriangleMesh::check`] refuses.
 pub fn read_mesh(bytes: &[u8], format: MeshFormat) -> Result<TriangleMesh, TargetError> {
-    read(bytes, format, &|uri| {
+    read_mesh_unless(bytes, format, &never)
+}
+
+/// As [`read_mesh`], but gives up once `cancelled` says so.
+///
+/// # Errors
+///
+/// Those of [`read_mesh`], and [`TargetError::Cancelled`].
+pub fn read_mesh_unless(
+    bytes: &[u8],
+    format: MeshFormat,
+    cancelled: Cancelled<'_>,
+) -> Result<TriangleMesh, TargetError> {
+    let no_files = |uri: &str| {
         Err(TargetError::BufferUri {
             uri: uri.to_owned(),
             reason: String::from("a mesh handed over as bytes must embed its buffers; save it as .glb"),
         })
-    })
+    };
+    read(bytes, format, &no_files, cancelled)
 }
 
 /// Reads a mesh from a file whose ending names the format.
@@ -74,22 +89,39 @@ pub fn read_mesh(bytes: &[u8], format: MeshFormat) -> Result<TriangleMesh, Targe
 ///
 /// An unknown ending, files that cannot be read, and what [`read_mesh`] refuses.
 pub fn read_mesh_file(path: &Path) -> Result<TriangleMesh, TargetError> {
+    read_mesh_file_unless(path, &never)
+}
+
+/// As [`read_mesh_file`], but gives up once `cancelled` says so.
+///
+/// # Errors
+///
+/// Those of [`read_mesh_file`], and [`TargetError::Cancelled`].
+pub fn read_mesh_file_unless(path: &Path, cancelled: Cancelled<'_>) -> Result<TriangleMesh, TargetError> {
     let format = MeshFormat::of(path)?;
-    let bytes = read_limited(path, check_size)?;
+    let bytes = read_limited(path, check_size, cancelled)?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    read(&bytes, format, &|uri| read_limited(&folder.join(gltf::relative_path(uri)?), check_size))
+    let beside = |uri: &str| read_limited(&folder.join(gltf::relative_path(uri)?), check_size, cancelled);
+    read(&bytes, format, &beside, cancelled)
 }
 
 type BufferReader<'a> = &'a dyn Fn(&str) -> Result<Vec<u8>, TargetError>;
 
-fn read(bytes: &[u8], format: MeshFormat, buffers: BufferReader) -> Result<TriangleMesh, TargetError> {
+fn read(
+    bytes: &[u8],
+    format: MeshFormat,
+    buffers: BufferReader,
+    cancelled: Cancelled<'_>,
+) -> Result<TriangleMesh, TargetError> {
     check_size(bytes.len() as u64)?;
     let mesh = match format {
-        MeshFormat::Obj => obj::read(bytes)?,
-        MeshFormat::Gltf => gltf::read(bytes, buffers)?,
-        MeshFormat::Stl => stl::read(bytes)?,
+        MeshFormat::Obj => obj::read(bytes, cancelled),
+        MeshFormat::Gltf => gltf::read(bytes, buffers, cancelled),
+        MeshFormat::Stl => stl::read(bytes, cancelled),
     };
-    mesh.check()?;
+    // What a reader made of bytes that stopped coming is not its error.
+    let mesh = if cancelled() { Err(TargetError::Cancelled) } else { mesh }?;
+    check_mesh(&mesh.vertices, &mesh.triangles, cancelled)?;
     Ok(mesh)
 }
 

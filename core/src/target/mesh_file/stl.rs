@@ -3,6 +3,7 @@
 use std::io::Cursor;
 
 use super::shortened;
+use crate::progress::{Cancelled, stops_at};
 use crate::target::error::TargetError;
 use crate::target::triangle_mesh::{TriangleMesh, Welder, check_counts};
 
@@ -10,12 +11,12 @@ use crate::target::triangle_mesh::{TriangleMesh, Welder, check_counts};
 const HEADER: usize = 84;
 const FACET: usize = 50;
 
-pub(super) fn read(bytes: &[u8]) -> Result<TriangleMesh, TargetError> {
-    let mut mesh = Builder::default();
+pub(super) fn read(bytes: &[u8], cancelled: Cancelled<'_>) -> Result<TriangleMesh, TargetError> {
+    let mut mesh = Builder { welder: Welder::default(), triangles: Vec::new(), cancelled };
     let is_text = bytes.trim_ascii_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
     // Some binary files start with `solid` too; theirs is the size that the count asks for.
     if is_text && binary_size(bytes).is_none_or(|size| size != bytes.len() as u64) {
-        for solid in solids(bytes) {
+        for solid in solids(bytes, cancelled) {
             mesh.add(&solid)?;
         }
     } else {
@@ -47,13 +48,17 @@ fn binary_size(bytes: &[u8]) -> Option<u64> {
     Some(HEADER as u64 + FACET as u64 * u64::from(u32::from_le_bytes(count)))
 }
 
-/// The solids of a text file, one after the other, in the form the reader expects: `solid ` with a space, lower case.
-fn solids(bytes: &[u8]) -> impl Iterator<Item = Vec<u8>> {
+/// The solids of a text file, one after the other, in the form the reader expects: `solid ` with a space, lower case. Cut
+/// short once work is cancelled.
+fn solids<'a>(bytes: &'a [u8], cancelled: Cancelled<'a>) -> impl Iterator<Item = Vec<u8>> + 'a {
     let mut lines = bytes.split(|&b| b == b'\n' || b == b'\r').map(<[u8]>::trim_ascii).filter(|line| !line.is_empty());
     std::iter::from_fn(move || {
         lines.next()?;
         let mut solid = b"solid \n".to_vec();
-        for line in lines.by_ref() {
+        for (number, line) in lines.by_ref().enumerate() {
+            if stops_at(number, cancelled) {
+                break;
+            }
             solid.extend(line.to_ascii_lowercase());
             solid.push(b'\n');
             if line.get(..8).is_some_and(|word| word.eq_ignore_ascii_case(b"endsolid")) {
@@ -64,13 +69,13 @@ fn solids(bytes: &[u8]) -> impl Iterator<Item = Vec<u8>> {
     })
 }
 
-#[derive(Default)]
-struct Builder {
+struct Builder<'a> {
     welder: Welder,
     triangles: Vec<[u32; 3]>,
+    cancelled: Cancelled<'a>,
 }
 
-impl Builder {
+impl Builder<'_> {
     fn add(&mut self, file: &[u8]) -> Result<(), TargetError> {
         let refused =
             |error: std::io::Error| TargetError::MeshFile { format: "STL", reason: shortened(&error.to_string()) };
@@ -78,6 +83,9 @@ impl Builder {
         for facet in stl_io::create_stl_reader(&mut cursor).map_err(refused)? {
             let facet = facet.map_err(refused)?;
             check_counts(0, self.triangles.len() as u64 + 1)?;
+            if stops_at(self.triangles.len(), self.cancelled) {
+                return Err(TargetError::Cancelled);
+            }
             let mut corners = [0; 3];
             for (corner, vertex) in corners.iter_mut().zip(facet.vertices) {
                 *corner = self.welder.index(vertex.0.map(f64::from))?;

@@ -105,8 +105,18 @@ enum class PathColumn : std::int32_t { Fraction = 0, Horizontal, Vertical, RimMo
 // Kinds of outputs, combined with |.
 namespace output {
 constexpr std::uint32_t GradedShell = 1, GradedSolid = 2, VoxelSolid = 4, VoxelShell = 8, Tables = 16, Report = 32,
-                        Design = 64, All = 127;
+                        Design = 64, Fabrication = 128, All = 255;
 }
+
+// Kinds of files to make a design, combined with |; 0 stands for those that it asks for, or where it asks for none, all.
+namespace fabrication {
+constexpr std::uint32_t Stl = 1, ThreeMf = 2, PrintStack = 4, Gcvf = 8, Dxf = 16, Svg = 32, Assembly = 64, Gltf = 128;
+}
+
+enum class SolvedModel : std::int32_t { Voxel = 0, Graded };
+enum class Flow : std::int32_t { Heat = 0, Current };
+enum class ConductShape : std::int32_t { Flat = 0, Morphed };
+enum class Regime : std::int32_t { Steady = 0, Transient, Both };
 
 namespace detail {
 
@@ -170,17 +180,23 @@ auto watched(const Progress &function, Body body) {
 // A design as its author states it, read and checked.
 class Input {
  public:
-  // `file` names the text in errors; paths in it are relative to `folder`.
-  static Input from_toml(std::string_view toml, std::string_view file = {}, std::string_view folder = {}) {
-    return Input(detail::call(
-        [&] { return bridge::parse_toml(detail::bytes(toml), detail::bytes(file), detail::bytes(folder)); }));
+  // `file` names the text in errors; paths in it are relative to `folder`. Large meshes take seconds: `progress` may
+  // cancel.
+  static Input from_toml(std::string_view toml, std::string_view file = {}, std::string_view folder = {},
+                         const Progress &progress = {}) {
+    return Input(detail::watched(progress, [&](const bridge::Progress &told) {
+      return bridge::parse_toml(detail::bytes(toml), detail::bytes(file), detail::bytes(folder), told);
+    }));
   }
-  static Input from_json(std::string_view json, std::string_view file = {}, std::string_view folder = {}) {
-    return Input(detail::call(
-        [&] { return bridge::parse_json(detail::bytes(json), detail::bytes(file), detail::bytes(folder)); }));
+  static Input from_json(std::string_view json, std::string_view file = {}, std::string_view folder = {},
+                         const Progress &progress = {}) {
+    return Input(detail::watched(progress, [&](const bridge::Progress &told) {
+      return bridge::parse_json(detail::bytes(json), detail::bytes(file), detail::bytes(folder), told);
+    }));
   }
-  static Input read(std::string_view file) {
-    return Input(detail::call([&] { return bridge::read(detail::bytes(file)); }));
+  static Input read(std::string_view file, const Progress &progress = {}) {
+    return Input(detail::watched(
+        progress, [&](const bridge::Progress &told) { return bridge::read(detail::bytes(file), told); }));
   }
 
   void validate() const {
@@ -339,7 +355,35 @@ class Design {
     }));
   }
 
+  // Solves one spoke with the finite elements inside the library: what verification.json holds.
+  std::string verify(SolvedModel model = SolvedModel::Voxel, const Progress &progress = {}) const {
+    return detail::text(detail::watched(progress, [&](const bridge::Progress &told) {
+      return rust_->verify(static_cast<std::int32_t>(model), told);
+    }));
+  }
+  // The design corrected by what its voxels really do, at most `iterations` times.
+  Design refine(std::size_t iterations, bool allow_large = false, const Progress &progress = {}) const {
+    return Design(detail::watched(
+        progress, [&](const bridge::Progress &told) { return rust_->refine(iterations, allow_large, told); }));
+  }
+  // Heat or current through one spoke: a case of conduct.json.
+  std::string conduct(Flow flow, Regime regime = Regime::Steady, SolvedModel model = SolvedModel::Voxel,
+                      ConductShape shape = ConductShape::Flat, const Progress &progress = {}) const {
+    return detail::text(detail::watched(progress, [&](const bridge::Progress &told) {
+      return rust_->conduct(static_cast<std::int32_t>(flow), static_cast<std::int32_t>(model),
+                            static_cast<std::int32_t>(shape), static_cast<std::int32_t>(regime), told);
+    }));
+  }
+  // Writes files to make the design into the folder of the design; returns their paths relative to it.
+  std::vector<std::string> fabricate(std::string_view folder, std::uint32_t kinds = 0, bool allow_large = false,
+                                     const Progress &progress = {}) const {
+    return detail::texts(detail::watched(progress, [&](const bridge::Progress &told) {
+      return rust_->fabricate(detail::bytes(folder), kinds, allow_large, told);
+    }));
+  }
+
  private:
+  explicit Design(rust::Box<bridge::CxxDesign> rust) : rust_(std::move(rust)) {}
   static std::vector<double> copied(const rust::Vec<double> &values) { return {values.begin(), values.end()}; }
   rust::Box<bridge::CxxDesign> rust_;
 };

@@ -1,0 +1,150 @@
+//! Correcting the modulus until the strip of voxels takes the target's shape.
+//!
+//! A mixture of voxels does not bend with the stiffness that its mean modulus gives it: random mixtures are softer, at high
+//! contrast the difference varies along the strip, and wide strips bend as plates. The finite elements know what the strip
+//! does; the elastica knows, in milliseconds, how a change of stiffness along the strip changes its shape. From the misfit
+//! `r` of a solution's mid-line and the elastica's sensitivity `J = d(mid-line)/d(ln B)` the change of the stiffness is
+//!
+//! ```text
+//! min over d of |r + J d|^2 + (a s)^2 |d|^2          s: largest singular value of J, a = 0.05
+//! ```
+//!
+//! The voxels' modulus is multiplied by `exp(d)`, the voxels are filled again in the same order, and the strip is solved
+//! again. (Mending a fine model by the inverse of a coarse one is known as space mapping.) Unlike the quotient of moment and
+//! curvature, the sensitivity is defined at inflections, where both vanish, and it knows that what is changed at one place
+//! moves the line of thrust everywhere. A step that does not bring the strip closer is tried in part, and the best strip is
+//! kept.
+
+mod mapping;
+
+use crate::design::{Design, Limits};
+use crate::error::Error;
+use crate::input::DesignInput;
+use crate::input::model::RefineInput;
+use crate::progress::Share;
+use crate::results::verification::Model;
+use crate::results::{EmbeddedOptions, EmbeddedVerification, verify_embedded};
+
+/// Factors of a correction, evenly spaced.
+const FACTORS: usize = 101;
+/// Share by which a step must bring the strip closer to count.
+const WORTHWHILE: f64 = 0.95;
+/// Factor of a step that did not bring the strip closer, and the part of a step below which no other is tried.
+const SHORTER: f64 = 0.6;
+const SHORTEST: f64 = 0.3;
+
+/// A refined design.
+#[derive(Debug)]
+pub struct Refinement {
+    /// The best design; its input holds the correction.
+    pub design: Design,
+    /// The solution of the best design.
+    pub verification: EmbeddedVerification,
+    /// Largest distance from the target, percent of the length: before, and after every step.
+    pub errors_percent: Vec<f64>,
+}
+
+/// Refines a design with at most `iterations` corrections, starting from the one its input has. Every voxel is resolved.
+///
+/// # Errors
+/// Those of [`Design::compute`] and of [`verify_embedded`] for the design as it is. A correction that cannot be solved ends
+/// the refinement and is not kept.
+pub fn refine(
+    input: &DesignInput,
+    limits: Limits,
+    iterations: usize,
+    options: &EmbeddedOptions,
+    progress: Share<'_>,
+) -> Result<Refinement, Error> {
+    let options = EmbeddedOptions { model: Model::Voxel, ..*options };
+    let part = 1.0 / (iterations + 1) as f64;
+    let design = Design::compute(input, limits)?;
+    let verification = verify_embedded(&design, &options, &|share| progress(part * share))?;
+    let mut errors = vec![rounded_error(&verification)];
+    let mut factors: Vec<f64> = (0..FACTORS).map(|i| factor(input, i)).collect();
+    let mut best = (design, verification);
+    let mut change = mapping::change(&best.0, &best.1.verification.midline_mm);
+    let mut size = 1.0;
+    for step in 0..iterations {
+        let Some(wanted) = &change else { break };
+        let tried = corrected(&best.0, &factors, wanted, size);
+        let mut next = input.clone();
+        next.refine = Some(RefineInput { iterations, correction: tried.clone(), errors_percent: Vec::new() });
+        let started = part * (step + 1) as f64;
+        let design = Design::compute(&next, limits)?;
+        let verification = match verify_embedded(&design, &options, &|share| progress(started + part * share)) {
+            Ok(verification) => verification,
+            Err(Error::Solver(_)) => break,
+            Err(error) => return Err(error),
+        };
+        let error = rounded_error(&verification);
+        let so_far = errors.iter().copied().fold(f64::INFINITY, f64::min);
+        errors.push(error);
+        if error < so_far {
+            let worthwhile = error < WORTHWHILE * so_far;
+            best = (design, verification);
+            factors = tried;
+            change = mapping::change(&best.0, &best.1.verification.midline_mm);
+            size = 1.0;
+            if !worthwhile {
+                break;
+            }
+        } else {
+            // Whole voxels answer a small change erratically: another part of it may do.
+            size *= SHORTER;
+            if size < SHORTEST {
+                break;
+            }
+        }
+    }
+    recorded(best, limits, iterations, errors)
+}
+
+/// The factors after a change of their logarithm, or the part of it given by `size`.
+fn corrected(design: &Design, factors: &[f64], change: &[f64], size: f64) -> Vec<f64> {
+    let [least, most] = RefineInput::FACTORS;
+    let value = |(i, factor): (usize, &f64)| {
+        let share = i as f64 / (FACTORS - 1) as f64;
+        let (low, high) = reach(design, share);
+        let changed = factor.clamp(low, high) * (size * mapping::at(change, share)).exp();
+        // Rounded, so that the design and its hash do not hang on the last digits of a sum.
+        round(changed, 1e-6).clamp(least, most)
+    };
+    factors.iter().enumerate().map(value).collect()
+}
+
+/// The best design with the history in its input, so that it can be computed again.
+fn recorded(
+    (design, mut verification): (Design, EmbeddedVerification),
+    limits: Limits,
+    iterations: usize,
+    errors_percent: Vec<f64>,
+) -> Result<Refinement, Error> {
+    let mut input = design.input().clone();
+    let correction = input.refine.take().map(|r| r.correction).unwrap_or_default();
+    input.refine = Some(RefineInput { iterations, correction, errors_percent: errors_percent.clone() });
+    let design = Design::compute(&input, limits)?;
+    verification.verification.provenance = crate::output::Provenance::of(design.input());
+    Ok(Refinement { design, verification, errors_percent })
+}
+
+/// Smallest and largest factor that the phases can follow at a share of the length: beyond it a correction would grow
+/// without any effect.
+fn reach(design: &Design, share: f64) -> (f64, f64) {
+    let (_, modulus) = design.width_and_modulus(share * design.input().strips.length_mm);
+    (design.phases().softest() / modulus, design.phases().stiffest() / modulus)
+}
+
+fn factor(input: &DesignInput, i: usize) -> f64 {
+    input.refine.as_ref().map_or(1.0, |refine| refine.factor(i as f64 / (FACTORS - 1) as f64))
+}
+
+fn rounded_error(verification: &EmbeddedVerification) -> f64 {
+    round(verification.verification.max_error_percent, 1e-4)
+}
+
+fn round(value: f64, unit: f64) -> f64 {
+    // Dividing by the whole inverse gives the decimal that is nearest.
+    let inverse = (1.0 / unit).round();
+    (value * inverse).round() / inverse
+}

@@ -1,0 +1,358 @@
+//! Finite elements of the strip against closed forms: patch test, beam, circle, clamped elastica; the tangent against
+//! differences; what is refused.
+
+#[allow(dead_code, reason = "shared between test programs")]
+mod common;
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use common::design;
+use voxelastica_core::elastica::HubSupport;
+use voxelastica_core::elastica::morph::Guide;
+use voxelastica_core::fem::assembly::{State, forces, tangent};
+use voxelastica_core::fem::element::{EnhancedBrick, Geometry, Isotropic, Law};
+use voxelastica_core::fem::mesh::Mesh;
+use voxelastica_core::fem::morph::{Lead, solve};
+use voxelastica_core::fem::pattern::Pattern;
+use voxelastica_core::fem::{FemError, Model, MorphOptions, MorphSolution};
+use voxelastica_core::mesh::{Block, Spacing};
+use voxelastica_core::progress::{never, unseen};
+use voxelastica_core::results::verification::Model as Which;
+use voxelastica_core::results::{EmbeddedOptions, EmbeddedVerification, compare, verify_embedded};
+use voxelastica_core::target::MeridianPoint;
+use voxelastica_core::{Design, Error};
+
+/// A strip of one material; `elements` along, across and through it.
+fn strip(size: [f64; 3], elements: [usize; 3], material: Isotropic, law: Law) -> Model {
+    let [along, across, through] = elements;
+    let widths = Spacing::Width(vec![size[1]; along + 1]);
+    let mesh = Mesh::new(&Block::new(size[0], size[2], through, vec![across; along], widths));
+    with_bricks(mesh, material, law)
+}
+
+fn with_bricks(mesh: Mesh, material: Isotropic, law: Law) -> Model {
+    let brick = |element: &[u32; 8]| {
+        EnhancedBrick::new(Geometry::of_hexahedron(&element.map(|n| mesh.nodes[n as usize])).unwrap(), material)
+    };
+    let bricks: Vec<EnhancedBrick> = mesh.elements.iter().map(brick).collect();
+    let count = bricks.len();
+    Model::new(mesh, law, bricks, (0..count as u32).collect(), vec![0; count])
+}
+
+/// Ends led along a curve given by its inclination; `hub` overrides where the hub ends up.
+fn guide(length: f64, inclination: impl Fn(f64) -> f64, hub: Option<[f64; 2]>, support: HubSupport) -> Guide {
+    let count = 401;
+    let step = length / (count - 1) as f64;
+    let (mut x, mut z) = (0.0, 0.0);
+    let mut stations = Vec::new();
+    for i in 0..count {
+        let s = i as f64 * step;
+        if i > 0 {
+            let middle = inclination(s - 0.5 * step);
+            x += step * middle.cos();
+            z += step * middle.sin();
+        }
+        let curvature = (inclination(s + 1e-6) - inclination(s - 1e-6)) / 2e-6;
+        stations.push(MeridianPoint { s, inclination: inclination(s), curvature, curvature_gradient: 0.0, x, z });
+    }
+    if let (Some([hub_x, hub_z]), Some(last)) = (hub, stations.last_mut()) {
+        (last.x, last.z) = (hub_x, hub_z);
+    }
+    Guide::Target { stations, support }
+}
+
+fn solved(model: &Model, guide: &Guide) -> MorphSolution {
+    solve(model, &Lead::new(guide, None), &MorphOptions::default(), &unseen).unwrap()
+}
+
+#[test]
+fn a_distorted_mesh_passes_the_patch_test_in_large_strains() {
+    let material = Isotropic { modulus: 10.0, poisson: 0.0 };
+    for law in [Law::SaintVenantKirchhoff, Law::NeoHooke] {
+        let widths = Spacing::Width(vec![3.0; 5]);
+        let mut mesh = Mesh::new(&Block::new(8.0, 2.0, 2, vec![2; 4], widths));
+        for plane in 1..4 {
+            for node in mesh.plane(plane) {
+                for k in 0..3 {
+                    mesh.nodes[node][k] += 0.25 * ((17 * node + 5 * k) as f64).sin();
+                }
+            }
+        }
+        let model = with_bricks(mesh, material, law);
+        // Rigid ends moved apart: without lateral contraction the strain is the same everywhere.
+        let stretch = 1.15;
+        let ends = guide(8.0, |_| 0.0, Some([8.0 * stretch, 0.0]), HubSupport::Held);
+        let found = solved(&model, &ends);
+        for (node, u) in model.mesh.nodes.iter().zip(&found.state.displacements) {
+            let exact = [(stretch - 1.0) * (node[0] - 8.0), 0.0, 0.0];
+            assert!((0..3).all(|k| (u[k] - exact[k]).abs() < 1e-6), "{law:?}: {u:?} {exact:?}");
+        }
+        if law == Law::SaintVenantKirchhoff {
+            let strain: f64 = 0.5 * (stretch * stretch - 1.0);
+            let force = -found.reactions.rim.horizontal;
+            assert!((force - stretch * 10.0 * strain * 6.0).abs() < 1e-5, "{force}");
+            assert!((found.elements.principal_strains[3] - 0.15).abs() < 1e-7);
+        }
+    }
+}
+
+#[test]
+fn a_guided_beam_has_its_closed_form_stiffness_and_converges() {
+    // Both ends clamped, one moved sideways: F = 12 E I d / (L^3 (1 + 12 E I / (k G A L^2))), narrow and without
+    // contraction.
+    let (length, width, thickness, modulus) = (20.0, 0.5, 1.0, 100.0);
+    let material = Isotropic { modulus, poisson: 0.0 };
+    let sideways = 1e-4;
+    let ends = guide(length, |_| 0.0, Some([length, sideways]), HubSupport::Held);
+    let inertia = width * thickness * thickness * thickness / 12.0;
+    let shear = 12.0 * modulus * inertia / (5.0 / 6.0 * material.shear() * width * thickness * length * length);
+    let exact = 12.0 * modulus * inertia * sideways / (length.powi(3) * (1.0 + shear));
+    let errors: Vec<f64> = [5, 10, 20, 40]
+        .into_iter()
+        .map(|along| {
+            let model = strip([length, width, thickness], [along, 2, 2], material, Law::SaintVenantKirchhoff);
+            let force = solved(&model, &ends).reactions.hub.vertical;
+            (force / exact - 1.0).abs()
+        })
+        .collect();
+    let order = (errors[0] / errors[2]).log2() / 2.0;
+    println!("guided beam: errors {errors:.2e?}, order {order:.2}");
+    assert!(errors[3] < 2e-3, "{errors:?}");
+    assert!(order > 1.7, "{errors:?}");
+}
+
+#[test]
+fn a_strip_under_pure_bending_closes_to_half_a_circle() {
+    let (length, modulus) = (40.0, 12.6);
+    let ends = guide(length, |s| std::f64::consts::PI * (0.5 - s / length), None, HubSupport::Free);
+    let radius = length / std::f64::consts::PI;
+    let material = Isotropic { modulus, poisson: 0.0 };
+    let mut errors = Vec::new();
+    for along in [10, 20, 40] {
+        let model = strip([length, 2.0, 0.5], [along, 2, 2], material, Law::SaintVenantKirchhoff);
+        let found = solved(&model, &ends);
+        let rim = found.reactions.rim;
+        let bending = modulus * 2.0 * 0.5_f64.powi(3) / 12.0 / radius;
+        assert!(rim.horizontal.abs() < 1e-5 * bending && rim.vertical.abs() < 1e-5 * bending, "{rim:?}");
+        assert_eq!(found.negative, 0);
+        let off = |p: &[f64; 3]| {
+            let angle = p[0] / radius;
+            (p[1] - radius * (1.0 - angle.cos())).hypot(p[2] - radius * angle.sin()) / length
+        };
+        errors.push([found.midline.iter().map(off).fold(0.0, f64::max), (-rim.moment / bending - 1.0).abs()]);
+    }
+    let order = |k: usize| (errors[0][k] / errors[2][k]).log2() / 2.0;
+    println!("half circle: errors of place and moment {errors:.2e?}, orders {:.2} {:.2}", order(0), order(1));
+    assert!(errors[2][0] < 2e-4 && errors[2][1] < 5e-3, "{errors:?}");
+    assert!(order(1) > 1.5, "{errors:?}");
+}
+
+#[test]
+fn the_tangent_is_the_derivative_of_the_forces() {
+    for (law, lift) in [(Law::SaintVenantKirchhoff, true), (Law::NeoHooke, false)] {
+        let material = Isotropic { modulus: 3.0, poisson: 0.35 };
+        let model = strip([6.0, 3.0, 1.0], [4, 2, 1], material, law);
+        let pattern = Pattern::new(&model.mesh, lift);
+        let displaced = (0..model.mesh.nodes.len()).map(|n| [0, 1, 2].map(|k| 0.1 * ((3 * n + 7 * k) as f64).sin()));
+        let mut state = State::new(&model, displaced.collect());
+        let mut values = vec![0.0; pattern.rows.len()];
+        forces(&model, &mut state, &never).unwrap().unwrap();
+        assert!(tangent(&model, &pattern, &state, &mut values, &never).unwrap());
+        let residual = |step: f64, direction: &[f64]| {
+            let mut moved = state.clone();
+            pattern.spread(direction, step, &mut moved.displacements);
+            pattern.gather(&forces(&model, &mut moved, &never).unwrap().unwrap().of_nodes)
+        };
+        for seed in 0..3 {
+            let direction: Vec<f64> = (0..pattern.unknowns()).map(|i| ((5 * i + seed) as f64).cos()).collect();
+            let exact = pattern.multiply(&values, &direction);
+            let (ahead, behind) = (residual(1e-5, &direction), residual(-1e-5, &direction));
+            let largest = exact.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+            for i in 0..exact.len() {
+                let slope = (ahead[i] - behind[i]) / 2e-5;
+                assert!((slope - exact[i]).abs() < 1e-6 * largest, "{law:?} {i}: {slope} {}", exact[i]);
+            }
+        }
+    }
+}
+
+fn verified(design: &Design, model: Which) -> EmbeddedVerification {
+    verify_embedded(design, &EmbeddedOptions { model, ..EmbeddedOptions::default() }, &unseen).unwrap()
+}
+
+/// The hemisphere's strip, 40 mm long.
+fn hemisphere(more: &str, pattern: &str) -> Design {
+    design(&format!(
+        "[target]\nkind = \"hemi-ellipsoid\"\n[strips]\ncount = 8\nlength_mm = 40.0\nhub_radius_mm = 4.0\nthickness_mm = \
+         2.0\n[materials]\nphases = [\"FLX9070\", \"FLX9095\"]\n[voxels]\nsize_mm = 1.0\npattern = \"{pattern}\"\n{more}"
+    ))
+}
+
+#[test]
+fn a_voxel_hemisphere_takes_its_shape_with_the_designed_forces() {
+    let design = hemisphere("", "random");
+    let solved = verified(&design, Which::Voxel);
+    let (figures, record) = (&solved.verification, solved.verification.embedded.as_ref().unwrap());
+    println!("hemisphere: {:.3} %, {} iterations", figures.max_error_percent, figures.iterations);
+    assert!(figures.max_error_percent < 1.0 && figures.iterations <= 6 && figures.increments == 1);
+    assert!(!record.unstable_branch && record.residual < 1e-6 && record.warnings.is_empty());
+    // In equilibrium both ends carry the same force; a free hub carries none upward.
+    let reactions = solved.solution.reactions;
+    let hub = solved.solution.midline.last().unwrap();
+    assert!((reactions.rim.horizontal - reactions.hub.horizontal).abs() < 1e-6 * reactions.rim.horizontal.abs());
+    assert!(reactions.hub.vertical.abs() < 1e-6 * reactions.rim.horizontal.abs());
+    let moment = reactions.rim.moment - reactions.rim.horizontal * hub[2] - reactions.rim.vertical * hub[1];
+    assert!((moment - reactions.hub.moment).abs() < 1e-5 * reactions.rim.moment.abs(), "{reactions:?}");
+    // A random mixture is softer than its mean modulus says, but not by half.
+    let ratio = reactions.rim.moment / design.forces().rim_moment;
+    assert!(ratio > 0.8 && ratio < 1.05, "{ratio}");
+    // Once more, byte for byte.
+    let again = verified(&design, Which::Voxel);
+    assert_eq!(again.solution.midline, solved.solution.midline);
+    let (mut one, mut other) = (Vec::new(), Vec::new());
+    solved.write_vtu(&mut one).unwrap();
+    again.write_vtu(&mut other).unwrap();
+    assert_eq!(one, other);
+}
+
+#[test]
+fn the_path_from_flat_ends_where_the_prediction_leads() {
+    let design = hemisphere("[thrust]\nhub = \"held\"", "split");
+    let direct = verified(&design, Which::Voxel);
+    let mut options = EmbeddedOptions::default();
+    options.morph.from_flat = true;
+    let led = verify_embedded(&design, &options, &unseen).unwrap();
+    assert!(led.verification.increments > 1 && direct.verification.increments == 1);
+    for (a, b) in direct.solution.midline.iter().zip(&led.solution.midline) {
+        assert!((a[1] - b[1]).hypot(a[2] - b[2]) < 1e-5, "{a:?} {b:?}");
+    }
+}
+
+#[test]
+fn an_odd_number_of_layers_is_solved_without_doubling_the_mesh() {
+    let design = design(
+        "[target]\nkind = \"hemi-ellipsoid\"\n[strips]\ncount = 8\nlength_mm = 30.0\nhub_radius_mm = 3.0\nthickness_mm = \
+         1.5\n[materials]\nphases = [\"FLX9070\", \"FLX9095\"]\n[voxels]\nsize_mm = 0.5\npattern = \"centred\"",
+    );
+    let solved = verified(&design, Which::Voxel);
+    assert_eq!(solved.model.mesh.elements.len(), design.grid().phases().len());
+    assert!(solved.verification.max_error_percent < 1.0, "{}", solved.verification.max_error_percent);
+}
+
+#[test]
+fn clamped_strips_take_the_elastica_s_shape() {
+    for ratio in ["0.5", "1.0", "2.0"] {
+        let design = design(&format!(
+            "[target]\nkind = \"strip\"\nwidth_mm = 12.0\nmodulus_ratio = {ratio}\nshortening = 0.6\n[strips]\nlength_mm = \
+             40.0\nthickness_mm = 2.0\n[materials]\nphases = [\"FLX9070\", \"FLX9095\"]\n[voxels]\nsize_mm = 1.0\n[decks]\n\
+             calculix_graded_elements = [60, 4, 2]"
+        ));
+        let solved = verified(&design, Which::Graded);
+        assert_eq!(solved.model.law, Law::NeoHooke);
+        let name = format!(
+            "{}/tests/fixtures/reference/rectangular_{}.csv",
+            env!("CARGO_MANIFEST_DIR"),
+            ratio.trim_end_matches(".0")
+        );
+        let text = std::fs::read_to_string(name).unwrap();
+        let rows: Vec<[f64; 4]> = text
+            .lines()
+            .skip(1)
+            .map(|line| line.split(',').map(|w| w.parse().unwrap()).collect::<Vec<f64>>().try_into().unwrap())
+            .collect();
+        let off = solved.solution.midline.iter().map(|[s, x, z]| {
+            let at = s / 40.0 * (rows.len() - 1) as f64;
+            let i = (at as usize).min(rows.len() - 2);
+            let value = |k: usize| rows[i][k] + (at - i as f64) * (rows[i + 1][k] - rows[i][k]);
+            (x / 40.0 - value(2)).hypot(z / 40.0 - value(3))
+        });
+        let largest = off.fold(0.0, f64::max);
+        let figures = &solved.verification;
+        println!(
+            "clamped, ratio {ratio}: {:.2} % of L off the published shape, {} iterations",
+            100.0 * largest,
+            figures.iterations
+        );
+        assert!(largest < 0.012, "{ratio}: {largest}");
+        assert!(!figures.embedded.as_ref().unwrap().unstable_branch);
+    }
+}
+
+#[test]
+fn a_strain_beyond_what_a_phase_stands_is_a_warning() {
+    let custom = |limit: f64| {
+        format!(
+            "[[materials.custom]]\nname = \"soft\"\nmodulus_mpa = 3.1\npoisson = 0.45\nmax_strain = {limit}\n\
+             [[materials.custom]]\nname = \"rigid\"\nmodulus_mpa = 12.6\npoisson = 0.3"
+        )
+    };
+    let text = |limit: f64| {
+        format!(
+            "[target]\nkind = \"hemi-ellipsoid\"\n[strips]\ncount = 8\nlength_mm = 30.0\nhub_radius_mm = 3.0\nthickness_mm = \
+             2.0\n[materials]\nphases = [\"soft\", \"rigid\"]\n{}\n[voxels]\nsize_mm = 1.0",
+            custom(limit)
+        )
+    };
+    let warnings = |limit: f64| verified(&design(&text(limit)), Which::Voxel).verification.embedded.unwrap().warnings;
+    assert!(warnings(0.5).is_empty());
+    let found = warnings(0.02);
+    assert!(found.len() == 1 && found[0].contains("SOFT") && found[0].contains("max_strain"), "{found:?}");
+}
+
+#[test]
+fn what_does_not_fit_is_refused_and_what_is_cancelled_stops() {
+    let design = hemisphere("", "random");
+    let mut options = EmbeddedOptions::default();
+    options.morph.memory_limit = Some(1_000_000);
+    let refused = verify_embedded(&design, &options, &unseen).unwrap_err();
+    assert_eq!(refused.exit_code(), 2);
+    assert!(refused.to_string().contains("GB") && refused.to_string().contains("larger voxels"), "{refused}");
+
+    // Asked often: many times an iteration.
+    let asked = AtomicUsize::new(0);
+    let whole = verify_embedded(&design, &EmbeddedOptions::default(), &|share| {
+        assert!((0.0..=1.0).contains(&share));
+        asked.fetch_add(1, Ordering::Relaxed);
+        true
+    });
+    assert!(whole.is_ok() && asked.load(Ordering::Relaxed) > 20, "{asked:?}");
+    for stop in [0, 1, 7, 20] {
+        let asked = AtomicUsize::new(0);
+        let stopped =
+            verify_embedded(&design, &EmbeddedOptions::default(), &|_| asked.fetch_add(1, Ordering::Relaxed) < stop);
+        assert!(matches!(stopped, Err(Error::Cancelled)));
+        assert_eq!(asked.load(Ordering::Relaxed), stop + 1);
+    }
+}
+
+#[test]
+fn a_strip_that_cannot_take_its_ends_says_where_and_what_was_tried() {
+    // The hub is to be further away than the strip is long, by far: the neo-Hookean law has an answer, the path is short
+    // of steps only where elements would fold; a rim turned by ten turns is one.
+    let material = Isotropic { modulus: 1.0, poisson: 0.3 };
+    let model = strip([6.0, 2.0, 2.0], [3, 2, 2], material, Law::NeoHooke);
+    let ends = guide(6.0, |s| 60.0 * (1.0 - s / 6.0), Some([-3.0, 0.0]), HubSupport::Held);
+    let failed = solve(&model, &Lead::new(&ends, None), &MorphOptions::default(), &unseen).unwrap_err();
+    let FemError::Diverged { fraction, tried, .. } = &failed else { panic!("{failed}") };
+    assert!(*fraction > 0.0 && tried.contains("prediction") && tried.contains("from flat"), "{failed}");
+}
+
+#[test]
+fn refinement_brings_the_strip_closer_and_is_computed_again_from_its_record() {
+    let input = hemisphere("", "random").input().clone();
+    let limits = voxelastica_core::Limits::default();
+    let refined = voxelastica_core::refine::refine(&input, limits, 2, &EmbeddedOptions::default(), &unseen).unwrap();
+    println!("refinement: {:?} % of L", refined.errors_percent);
+    let best = refined.errors_percent.iter().copied().fold(f64::INFINITY, f64::min);
+    assert!(best < 0.5 * refined.errors_percent[0], "{:?}", refined.errors_percent);
+    // The record alone gives the same voxels, and they are what was solved.
+    let text = serde_json::to_string(refined.design.input()).unwrap();
+    let again: voxelastica_core::DesignInput = serde_json::from_str(&text).unwrap();
+    let again = Design::compute(&again, limits).unwrap();
+    assert_eq!(again.grid(), refined.design.grid());
+    let figures = compare(again.profile(), &verified(&again, Which::Voxel).solution.midline).unwrap();
+    assert!((figures.max_error_percent - best).abs() < 1e-3, "{} {best}", figures.max_error_percent);
+    let summary = voxelastica_core::output::Summary::of(&again).refinement.unwrap();
+    assert_eq!(summary.error_after_percent, best);
+    assert_eq!(summary.error_before_percent, refined.errors_percent[0]);
+}
