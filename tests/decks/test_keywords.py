@@ -14,7 +14,13 @@ from .keywords import check_deck, parse_deck
 from .table import dialect
 
 GOOD = Path(__file__).parent / "good"
-DIALECTS = {"parts_shell": "abaqus", "flat_shell": "abaqus", "calculix_solid": "calculix"}
+DIALECTS = {
+    "parts_shell": "abaqus",
+    "parts_current": "abaqus",
+    "flat_shell": "abaqus",
+    "calculix_solid": "calculix",
+    "calculix_heat": "calculix",
+}
 
 
 def text(name: str) -> str:
@@ -155,6 +161,19 @@ MISTAKES = [
     ("calculix_solid", "*HEADING", "*PART, NAME=A\n*HEADING", "PART", "unknown keyword"),
     ("calculix_solid", "REF NODE=103", "REF NODE=RP-HUB", "RIGID BODY", "not a whole number"),
     ("calculix_solid", "1, 1, 5, 6, 2, 4, 8, 7, 3", "1, 1, 5, 6, 2, 4, 8, 7", "ELEMENT", "7 nodes, C3D8I has 8"),
+    # heat and current
+    ("calculix_heat", "*SPECIFIC HEAT\n1.1e9\n", "", "MATERIAL", "has no *SPECIFIC HEAT"),
+    ("calculix_heat", "*CONDUCTIVITY\n0.3155", "*CONDUCTIVITY\n0", "CONDUCTIVITY", "not a positive number"),
+    ("calculix_heat", "DELTMX=2", "DELTMX=2, STEADY STATE", "HEAT TRANSFER", "exclude each other"),
+    ("calculix_heat", "AMPLITUDE=JUMP\n", "AMPLITUDE=LEAP\n", "BOUNDARY", "amplitude LEAP is not defined"),
+    ("calculix_heat", "NSET=MIDLINE, TIME POINTS=PICTURES", "NSET=MIDLINE, TIME POINTS=P", "NODE PRINT",
+     "time points P is not defined"),
+    ("calculix_heat", "RIM,11,11,", "RIM,10,10,", "BOUNDARY", "no degree of freedom"),
+    ("parts_current", "RIM-FACE,CS", "RIM-SIDE,CS", "DSECURRENT", "surface RIM-SIDE is not defined"),
+    ("parts_current", "*ELECTRICAL CONDUCTIVITY\n1e-13\n", "", "MATERIAL", "has no *ELECTRICAL CONDUCTIVITY"),
+    ("parts_current", "HUB,9,9,0", "RIM-OTHERS,9,9,0", "EQUATION", "is prescribed too"),
+    ("parts_current", "TYPE=DC3D8E", "TYPE=DC3D8F", "ELEMENT", "unknown element type"),
+    ("parts_current", "RIM-ELEMENTS,S6", "RIM-ELEMENTS,E6", "SURFACE", "has no face E6"),
 ]  # fmt: skip
 
 
