@@ -15,8 +15,11 @@ use super::transient::{Drive, Effort, Storage, Transient, TransientOptions, inte
 use crate::input::Electrode;
 use crate::report::number;
 
-/// Conductors between dielectrics relax more slowly than alone: a run may last so many times longer than asked.
-const PATIENCE: f64 = 10.0;
+/// A run may last so many times longer than asked: narrow paths beside dielectrics relax more slowly than the phase alone.
+const PATIENCE: f64 = 1e3;
+
+/// The same where no path of the conducting phase reaches through, so that no plateau is to be expected.
+const PATIENCE_WITHOUT_PATH: f64 = 10.0;
 
 /// Fields in air break down at 3 MV/m, in polymers at some 100 MV/m.
 const BREAKDOWN_V_MM: f64 = 1e5;
@@ -46,10 +49,11 @@ pub(super) fn solve(
                 .to_owned(),
         );
     }
+    let patience = if found.apart.is_some_and(|apart| !apart.percolates) { PATIENCE_WITHOUT_PATH } else { PATIENCE };
     let flow = found.slice_flux[0];
     let steady = SteadyAnswer::new(found, [flow, potential], effective(potential), bounds, task.points);
     let transient = if task.regimes.transient {
-        let mut answer = relax(task, &sigma, potential, watch.part(share, 1.0))?;
+        let mut answer = relax(task, &sigma, potential, patience, watch.part(share, 1.0))?;
         let last = answer.history[0].last().copied().unwrap_or(potential);
         if answer.critical_times_s[0].is_some() {
             answer.effective_conductivities = vec![Some(effective(last))];
@@ -122,7 +126,13 @@ fn unit_resistance(task: &Task<'_>, watch: Watch<'_>) -> Result<(f64, Vec<f64>),
 }
 
 /// Runs until the rim's potential is on its plateau and every field was taken.
-fn relax(task: &Task<'_>, sigma: &[f64], plateau: f64, watch: Watch<'_>) -> Result<TransientAnswer, ConductionError> {
+fn relax(
+    task: &Task<'_>,
+    sigma: &[f64],
+    plateau: f64,
+    patience: f64,
+    watch: Watch<'_>,
+) -> Result<TransientAnswer, ConductionError> {
     let (mesh, input) = (&task.strip.mesh, task.input);
     let epsilon = task.strip.property(Property::Permittivity)?;
     let relaxation =
@@ -151,7 +161,7 @@ fn relax(task: &Task<'_>, sigma: &[f64], plateau: f64, watch: Watch<'_>) -> Resu
         tolerance: input.time_tolerance,
         range: None,
         first_step: 1e-4 * relaxation.min(longest),
-        end: PATIENCE * longest,
+        end: patience * longest,
         solver: STEP_SOLVER,
     };
     let mut answer = TransientAnswer {
