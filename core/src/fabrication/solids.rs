@@ -32,6 +32,15 @@ pub struct Stl;
 /// Writes `fabrication/spoke.3mf` or `fabrication/flower.3mf`.
 pub struct ThreeMf;
 
+/// In which frame a file holds the vertices of spokes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Vertices {
+    /// Where the spokes lie.
+    Placed,
+    /// The spoke's own.
+    OfSpoke,
+}
+
 /// What is laid out: the different spokes, mirrored or not, and where they stand.
 struct Scene<'a> {
     surface: VoxelSurface<'a>,
@@ -43,14 +52,14 @@ struct Scene<'a> {
 }
 
 impl<'a> Scene<'a> {
-    fn new(job: &Job<'a>) -> Result<Self, SurfaceError> {
+    fn new(job: &Job<'a>, vertices: Vertices) -> Result<Self, SurfaceError> {
         let design = job.design;
         let grid = design.grid();
         let flower = if job.input.scope == Scope::Flower { FlatFlower::of(design) } else { None };
         let widest = grid.half_widths().iter().copied().max().unwrap_or(0) as f64 * grid.size_mm();
         let reach = match &flower {
-            Some(flower) => flower.reach_mm(design),
-            None => design.input().strips.length_mm.max(widest),
+            Some(flower) if vertices == Vertices::Placed => flower.reach_mm(design),
+            _ => design.input().strips.length_mm.max(widest),
         };
         let spokes = flower.as_ref().map_or_else(
             || vec![(Placement::IDENTITY, false)],
@@ -88,14 +97,15 @@ impl Maker for Stl {
     }
 
     fn plan(&self, job: &Job<'_>) -> Result<Estimate, FabricationError> {
-        let scene = Scene::new(job).map_err(|error| FabricationError::Surface { kind: self.kind(), error })?;
+        let scene = Scene::new(job, Vertices::Placed)
+            .map_err(|error| FabricationError::Surface { kind: self.kind(), error })?;
         let spokes = scene.spokes.len() as u64 + u64::from(scene.flower.is_none() && scene.alternates(job.design));
         Ok(Estimate { voxels: 0, bytes: spokes.saturating_mul(stl::size(scene.triangles())) })
     }
 
     fn write(&self, job: &Job<'_>, staging: &mut Staging, progress: Progress<'_>) -> Result<Made, Error> {
         let counter = Counter::new(progress);
-        let scene = Scene::new(job).map_err(SolidError::from).map_err(failed)?;
+        let scene = Scene::new(job, Vertices::Placed).map_err(SolidError::from).map_err(failed)?;
         let tallies = tallies(&scene, &|| counter.is_cancelled())?;
         let mut made = Made { details: details(job, &scene, &tallies), ..Made::default() };
         let mut file = |name: String, bodies: &[stl::Body<'_>], what: String| -> Result<(), Error> {
@@ -145,7 +155,8 @@ impl Maker for ThreeMf {
     }
 
     fn plan(&self, job: &Job<'_>) -> Result<Estimate, FabricationError> {
-        let scene = Scene::new(job).map_err(|error| FabricationError::Surface { kind: self.kind(), error })?;
+        let scene = Scene::new(job, Vertices::OfSpoke)
+            .map_err(|error| FabricationError::Surface { kind: self.kind(), error })?;
         let different = 1 + u64::from(scene.alternates(job.design));
         let each = match job.input.three_mf_geometry {
             ThreeMfGeometry::Mesh => PACKED_TRIANGLE * scene.triangles(),
@@ -157,7 +168,7 @@ impl Maker for ThreeMf {
 
     fn write(&self, job: &Job<'_>, staging: &mut Staging, progress: Progress<'_>) -> Result<Made, Error> {
         let counter = Counter::new(progress);
-        let scene = Scene::new(job).map_err(SolidError::from).map_err(failed)?;
+        let scene = Scene::new(job, Vertices::OfSpoke).map_err(SolidError::from).map_err(failed)?;
         let tallies = tallies(&scene, &|| counter.is_cancelled())?;
         let imaged = job.input.three_mf_geometry == ThreeMfGeometry::ImageStack;
         let (outlines, images) = if imaged { imaged_spokes(job, &scene).map_err(failed)? } else { (None, Vec::new()) };
@@ -253,9 +264,9 @@ impl ThreeMf {
 fn imaged_spokes(job: &Job<'_>, scene: &Scene<'_>) -> Result<(Option<VoxelGrid>, Vec<PhaseImages>), SolidError> {
     let grid = job.design.grid();
     let outline = VoxelGrid::new(grid.size_mm(), grid.layers(), grid.half_widths().to_vec());
-    let mut images = vec![PhaseImages::of(grid, "spoke", false)?];
+    let mut images = vec![PhaseImages::of(grid, "spoke")?];
     if scene.alternates(job.design) {
-        images.push(PhaseImages::of(grid, "mirrored", true)?);
+        images.push(PhaseImages::of_mirror_image(grid, "mirrored")?);
     }
     Ok((Some(outline), images))
 }

@@ -103,15 +103,20 @@ fn a_package_holds_each_phase_once_and_places_it() {
     assert!(parts.contains_key("[Content_Types].xml") && parts.contains_key("_rels/.rels"));
 }
 
+fn image(png: &[u8]) -> Vec<u8> {
+    let mut reader = png::Decoder::new(Cursor::new(png)).read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut pixels).unwrap();
+    pixels
+}
+
 #[test]
 fn images_show_the_phases_the_right_way_up() {
     let grid = grid();
-    let images = volumetric::PhaseImages::of(&grid, "phases", false).unwrap();
+    let images = volumetric::PhaseImages::of(&grid, "phases").unwrap();
     assert_eq!((images.files.len(), images.pixels), (2, [4, 4]));
     for (layer, (_, png)) in images.files.iter().enumerate() {
-        let mut reader = png::Decoder::new(Cursor::new(png)).read_info().unwrap();
-        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
-        reader.next_frame(&mut pixels).unwrap();
+        let pixels = image(png);
         for slice in 0..4 {
             let own = grid.half_widths()[slice];
             for across in 0..2 * own {
@@ -122,6 +127,11 @@ fn images_show_the_phases_the_right_way_up() {
                 assert!((0..3).all(|c| (pixel[c] == 255) == (c == phase)), "{layer} {slice} {across}");
             }
         }
+    }
+    let mirrored = volumetric::PhaseImages::of_mirror_image(&grid, "phases").unwrap();
+    for (one, other) in images.files.iter().zip(&mirrored.files) {
+        let upside_down: Vec<u8> = image(&one.1).rchunks(12).flatten().copied().collect();
+        assert_eq!(upside_down, image(&other.1));
     }
     let whole = Mesh { vertices: vec![[0.0; 3]; 3], triangles: vec![[0, 1, 2]] };
     let provenance = provenance();

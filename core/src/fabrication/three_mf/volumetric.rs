@@ -32,11 +32,24 @@ pub struct PhaseImages {
 }
 
 impl PhaseImages {
-    /// The images of a grid in the strip's own frame, or of its mirror image. `stack` names them in the package.
+    /// The images of a grid in the strip's own frame. `stack` names them in the package.
     ///
     /// # Errors
     /// [`SolidError::TooMany`] for more slices than an image can have columns.
-    pub fn of(grid: &VoxelGrid, stack: &str, mirrored: bool) -> Result<Self, SolidError> {
+    pub fn of(grid: &VoxelGrid, stack: &str) -> Result<Self, SolidError> {
+        // The first row is the highest voxel across.
+        Self::with_rows(grid, stack, |row, rows| rows - 1 - row)
+    }
+
+    /// The images of a grid mirrored at the mid-line.
+    ///
+    /// # Errors
+    /// Those of [`Self::of`].
+    pub fn of_mirror_image(grid: &VoxelGrid, stack: &str) -> Result<Self, SolidError> {
+        Self::with_rows(grid, stack, |row, _| row)
+    }
+
+    fn with_rows(grid: &VoxelGrid, stack: &str, across: fn(usize, usize) -> usize) -> Result<Self, SolidError> {
         let half = grid.half_widths().iter().copied().max().unwrap_or(0);
         let pixels = [pixels(grid.slices())?, pixels(2 * half)?];
         let layers = (0..grid.layers()).map(|layer| {
@@ -44,9 +57,7 @@ impl PhaseImages {
             for row in 0..2 * half {
                 for slice in 0..grid.slices() {
                     let own = grid.half_widths()[slice];
-                    // The first row is the highest voxel across.
-                    let place = if mirrored { row } else { 2 * half - 1 - row };
-                    let across = place.checked_sub(half - own).filter(|a| *a < 2 * own);
+                    let across = across(row, 2 * half).checked_sub(half - own).filter(|a| *a < 2 * own);
                     let phase = across.map_or(0, |a| grid.slice(slice)[layer * 2 * own + a]);
                     let at = 3 * (row * grid.slices() + slice);
                     if let Some(channel) = rgb.get_mut(at + usize::from(phase.min(2))) {

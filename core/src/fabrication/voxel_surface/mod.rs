@@ -42,8 +42,8 @@ use contact::SIZES;
 /// Voxels of a slab, about.
 const SLAB_VOXELS: usize = 8192;
 
-/// Slabs that are worked on at once; fixed, so that nothing depends on the machine.
-const BATCH: usize = 16;
+/// Voxels that are worked on at once, about, and so between two chances to cancel.
+const BATCH_VOXELS: usize = 1 << 17;
 
 /// Slabs that an estimate looks at.
 const SAMPLES: usize = 6;
@@ -209,7 +209,8 @@ impl<'a> VoxelSurface<'a> {
         mut take: impl FnMut(usize, T) -> Result<(), E>,
     ) -> Result<(), E> {
         let all: Vec<usize> = (0..self.slabs()).collect();
-        for batch in all.chunks(BATCH) {
+        let slab = self.grid.phases().len() / self.slabs().max(1);
+        for batch in all.chunks((BATCH_VOXELS / slab.max(1)).clamp(2, 16)) {
             if cancelled() {
                 return Err(SurfaceError::Cancelled.into());
             }
