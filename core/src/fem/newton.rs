@@ -145,7 +145,7 @@ impl<'a> Solver<'a> {
             residual = self.pattern.gather(&held.of_nodes);
             let relative = norm(&residual) / held.scale.max(f64::MIN_POSITIVE);
             let largest = change.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
-            if (close && relative <= TOLERANCE) || largest <= SMALLEST_STEP * length {
+            if close && (relative <= TOLERANCE || largest <= SMALLEST_STEP * length) {
                 step(iterations, relative);
                 return Ok(Equilibrium {
                     forces: held,

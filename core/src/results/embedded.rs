@@ -71,6 +71,9 @@ pub fn verify_embedded(
             (Resolution::Graded(design.input().decks.calculix_graded_elements), design.graded_path().ok().flatten())
         }
     };
+    let (elements, layers) = size(design, resolution);
+    let limit = options.morph.memory_limit.or_else(fem::memory::default_limit);
+    fem::memory::require(elements, layers, limit)?;
     let solve = || {
         let model = fem::Model::of_design(design, resolution)?;
         Ok::<_, FemError>((morph::solve(&model, &Lead::new(guide, path), &options.morph, progress)?, model))
@@ -100,6 +103,17 @@ pub fn verify_embedded(
         midline_mm: solution.midline.clone(),
     };
     Ok(EmbeddedVerification { verification, model, solution })
+}
+
+/// Elements of a strip, and how many of them lie above each other.
+fn size(design: &Design, resolution: Resolution) -> (u64, usize) {
+    match resolution {
+        Resolution::Voxels(per_edge) => {
+            let elements = design.grid().phases().len() as u64 * (per_edge as u64).saturating_pow(3);
+            (elements, design.grid().layers() * per_edge)
+        }
+        Resolution::Graded([along, across, through]) => ((along * across * through) as u64, through),
+    }
 }
 
 fn record(design: &Design, model: &fem::Model, solution: &MorphSolution) -> EmbeddedRecord {
