@@ -19,7 +19,7 @@
 #include <stdint.h>
 
 // Version of the interface that this header describes.
-#define VOXELASTICA_ABI_VERSION 1
+#define VOXELASTICA_ABI_VERSION 2
 
 // What a call returns. Codes are never reused; those below 6 and 130 are the command line's exit codes.
 enum voxelastica_status
@@ -188,14 +188,126 @@ enum voxelastica_output
   VOXELASTICA_OUTPUT_REPORT = 32,
   // `design.json`.
   VOXELASTICA_OUTPUT_DESIGN = 64,
+  // The files to make the thing that the design asks for (`fabrication.write`).
+  VOXELASTICA_OUTPUT_FABRICATION = 128,
   // All of them.
-  VOXELASTICA_OUTPUT_ALL = 127,
+  VOXELASTICA_OUTPUT_ALL = 255,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
 typedef enum voxelastica_output voxelastica_output;
 #else
 typedef uint32_t voxelastica_output;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// Which strip is solved.
+enum voxelastica_solved_model
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  // Every voxel its phase.
+  VOXELASTICA_SOLVED_MODEL_VOXEL = 0,
+  // Smooth width, graded modulus.
+  VOXELASTICA_SOLVED_MODEL_GRADED = 1,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum voxelastica_solved_model voxelastica_solved_model;
+#else
+typedef int32_t voxelastica_solved_model;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// What flows.
+enum voxelastica_flow
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  // Heat: the rim at a temperature.
+  VOXELASTICA_FLOW_HEAT = 0,
+  // Current: in at the rim, the far end grounded.
+  VOXELASTICA_FLOW_CURRENT = 1,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum voxelastica_flow voxelastica_flow;
+#else
+typedef int32_t voxelastica_flow;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// The shape it flows through.
+enum voxelastica_conduct_shape
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  // The flat strip.
+  VOXELASTICA_CONDUCT_SHAPE_FLAT = 0,
+  // The closed one, as the forward model predicts it.
+  VOXELASTICA_CONDUCT_SHAPE_MORPHED = 1,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum voxelastica_conduct_shape voxelastica_conduct_shape;
+#else
+typedef int32_t voxelastica_conduct_shape;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// What of it is computed.
+enum voxelastica_regime
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  // The state after a long time.
+  VOXELASTICA_REGIME_STEADY = 0,
+  // The way there.
+  VOXELASTICA_REGIME_TRANSIENT = 1,
+  // Both.
+  VOXELASTICA_REGIME_BOTH = 2,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum voxelastica_regime voxelastica_regime;
+#else
+typedef int32_t voxelastica_regime;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// Kinds of files to make a design, to be combined with `|`; 0 stands for those that the design asks for, or where it asks
+// for none, all that it can have.
+enum voxelastica_fabrication
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  // Closed meshes for printers, one a phase.
+  VOXELASTICA_FABRICATION_STL = 1,
+  // A 3MF package.
+  VOXELASTICA_FABRICATION_THREE_MF = 2,
+  // A folder of PNG slices at a printer's pitch.
+  VOXELASTICA_FABRICATION_PRINT_STACK = 4,
+  // GrabCAD's container of PNG slices.
+  VOXELASTICA_FABRICATION_GCVF = 8,
+  // Cut lines for a laser cutter.
+  VOXELASTICA_FABRICATION_DXF = 16,
+  // The same as a drawing.
+  VOXELASTICA_FABRICATION_SVG = 32,
+  // Hub, base ring and post.
+  VOXELASTICA_FABRICATION_ASSEMBLY = 64,
+  // A preview of the flat and the closed flower.
+  VOXELASTICA_FABRICATION_GLTF = 128,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum voxelastica_fabrication voxelastica_fabrication;
+#else
+typedef uint32_t voxelastica_fabrication;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
@@ -347,6 +459,24 @@ typedef struct {
 extern "C" {
 #endif // __cplusplus
 
+// Solves heat or current on one spoke; nothing is read or written. `flow` is a `voxelastica_flow`, `model` a
+// `voxelastica_solved_model`, `shape` a `voxelastica_conduct_shape`, `regime` a `voxelastica_regime`; temperatures,
+// currents, times and thresholds are those of the design's table `conduction`. `json` becomes the case as `conduct.json`
+// has it: flows, effective conductivities, critical times, and which values are assumptions. `progress` may be null and is
+// told thousandths.
+//
+// # Safety
+// `progress` may be called with `user` on this thread during the call; `json` and `error` are null or writable.
+voxelastica_status voxelastica_design_conduct(const voxelastica_design *design,
+                                              int32_t flow,
+                                              int32_t model,
+                                              int32_t shape,
+                                              int32_t regime,
+                                              voxelastica_progress progress,
+                                              void *user,
+                                              voxelastica_text **json,
+                                              voxelastica_error **error);
+
 // Computes a design; nothing is read or written. More than 200 million voxels are refused unless `allow_large`.
 // `progress` may be null; it is called with `user`. Free the design with `voxelastica_design_free`; the input may go
 // before.
@@ -422,6 +552,24 @@ size_t voxelastica_error_line(const voxelastica_error *error);
 // Frees an error. Null is allowed.
 voxelastica_status voxelastica_error_free(voxelastica_error *error);
 
+// Writes files to make a design into the folder `fabrication` of a design's folder: those of the kinds `kinds`
+// (`voxelastica_fabrication`, combined; 0 for the design's own). Either all files get their names or none. `progress` may be
+// null. `files` (null: not wanted) becomes a JSON list of the files' paths relative to the folder. More voxels or bytes than
+// the limits are refused unless `allow_large`.
+//
+// # Safety
+// `folder` is null or points to `folder_length` bytes; `progress` may be called with `user` on this thread during the
+// call; `files` and `error` are null or writable.
+voxelastica_status voxelastica_design_fabricate(const voxelastica_design *design,
+                                                const char *folder,
+                                                size_t folder_length,
+                                                uint32_t kinds,
+                                                bool allow_large,
+                                                voxelastica_progress progress,
+                                                void *user,
+                                                voxelastica_text **files,
+                                                voxelastica_error **error);
+
 // Prepares the surfaces of all spokes of the strip `strip` (a `voxelastica_strip_kind`), `along` by `across` quads each,
 // in the order and the frame of `voxelastica_mesh`, spoke after spoke. Free it with `voxelastica_flower_free`; the design
 // may go before.
@@ -484,16 +632,20 @@ voxelastica_status voxelastica_flower_fill_f64(const voxelastica_flower *flower,
 voxelastica_status voxelastica_flower_free(voxelastica_flower *flower);
 
 // Reads a design from TOML text. `file` names it in errors, and its stem names a design that has no name (may be empty);
-// relative paths are relative to `folder` (empty: the working folder). Free it with `voxelastica_input_free`.
+// relative paths are relative to `folder` (empty: the working folder). `progress` may be null; a large mesh takes seconds.
+// Free the input with `voxelastica_input_free`.
 //
 // # Safety
-// Every pointer is null or points to as many bytes as its length says; `input` and `error` are null or writable.
+// Every pointer is null or points to as many bytes as its length says; `progress` may be called with `user` on this
+// thread during the call; `input` and `error` are null or writable.
 voxelastica_status voxelastica_input_parse_toml(const char *toml,
                                                 size_t toml_length,
                                                 const char *file,
                                                 size_t file_length,
                                                 const char *folder,
                                                 size_t folder_length,
+                                                voxelastica_progress progress,
+                                                void *user,
                                                 voxelastica_input **input,
                                                 voxelastica_error **error);
 
@@ -507,16 +659,20 @@ voxelastica_status voxelastica_input_parse_json(const char *json,
                                                 size_t file_length,
                                                 const char *folder,
                                                 size_t folder_length,
+                                                voxelastica_progress progress,
+                                                void *user,
                                                 voxelastica_input **input,
                                                 voxelastica_error **error);
 
-// Reads a design file (`.json` as JSON, anything else as TOML) and the files it names. Free the input with
-// `voxelastica_input_free`.
+// Reads a design file (`.json` as JSON, anything else as TOML) and the files it names. `progress` may be null. Free the
+// input with `voxelastica_input_free`.
 //
 // # Safety
 // As for `voxelastica_input_parse_toml`.
 voxelastica_status voxelastica_input_read(const char *file,
                                           size_t file_length,
+                                          voxelastica_progress progress,
+                                          void *user,
                                           voxelastica_input **input,
                                           voxelastica_error **error);
 
@@ -740,6 +896,42 @@ size_t voxelastica_text_length(const voxelastica_text *text);
 
 // Frees a text. Null is allowed.
 voxelastica_status voxelastica_text_free(voxelastica_text *text);
+
+// Solves one spoke with the finite elements inside the library and compares its mid-line with the target; nothing is read
+// or written. `model` is a `voxelastica_solved_model`. `json` becomes what `verification.json` holds: errors, reactions,
+// strains, the mid-line. `progress` may be null and is told thousandths; cancelling waits for a factorisation under way.
+//
+// # Safety
+// `progress` may be called with `user` on this thread during the call; `json` and `error` are null or writable.
+voxelastica_status voxelastica_design_verify(const voxelastica_design *design,
+                                             int32_t model,
+                                             voxelastica_progress progress,
+                                             void *user,
+                                             voxelastica_text **json,
+                                             voxelastica_error **error);
+
+// Corrects a design's modulus by what its voxels really do, at most `iterations` times (1 to 50), and gives the best design
+// found: a new one, to be freed by `voxelastica_design_free`. Its summary holds the error before and after. `progress` may
+// be null and is told thousandths.
+//
+// # Safety
+// `progress` may be called with `user` on this thread during the call; `refined` and `error` are null or writable.
+voxelastica_status voxelastica_design_refine(const voxelastica_design *design,
+                                             size_t iterations,
+                                             bool allow_large,
+                                             voxelastica_progress progress,
+                                             void *user,
+                                             voxelastica_design **refined,
+                                             voxelastica_error **error);
+
+// The input of a design as a handle of its own, with what a refinement recorded in it. Free it with
+// `voxelastica_input_free`.
+//
+// # Safety
+// `input` and `error` are null or writable.
+voxelastica_status voxelastica_design_input(const voxelastica_design *design,
+                                            voxelastica_input **input,
+                                            voxelastica_error **error);
 
 // Lends the voxels of one spoke, until the design is freed.
 //

@@ -948,6 +948,10 @@ struct CxxDesign final : public ::rust::Opaque {
   ::rust::Vec<double> phase_centres(::std::size_t phase) const;
   ::rust::Vec<double> hub(::std::int32_t strip, double fraction) const;
   ::rust::Vec<::rust::String> write(::rust::Slice<::std::uint8_t const> folder, ::std::uint32_t kinds, bool allow_large, ::voxelastica::bridge::Progress const &progress) const;
+  ::rust::String verify(::std::int32_t model, ::voxelastica::bridge::Progress const &progress) const;
+  ::rust::Box<::voxelastica::bridge::CxxDesign> refine(::std::size_t iterations, bool allow_large, ::voxelastica::bridge::Progress const &progress) const;
+  ::rust::String conduct(::std::int32_t flow, ::std::int32_t model, ::std::int32_t shape, ::std::int32_t regime, ::voxelastica::bridge::Progress const &progress) const;
+  ::rust::Vec<::rust::String> fabricate(::rust::Slice<::std::uint8_t const> folder, ::std::uint32_t kinds, bool allow_large, ::voxelastica::bridge::Progress const &progress) const;
   ::rust::Box<::voxelastica::bridge::CxxMesh> mesh(::std::int32_t strip, double fraction, ::std::size_t spoke, ::std::size_t along, ::std::size_t across) const;
   ::rust::Box<::voxelastica::bridge::CxxFlower> flower(::std::int32_t strip, ::std::size_t along, ::std::size_t across) const;
   ::rust::Box<::voxelastica::bridge::CxxPath> path(::std::int32_t strip, ::std::size_t points, ::voxelastica::bridge::Progress const &progress) const;
@@ -1014,11 +1018,11 @@ private:
 };
 #endif // CXXBRIDGE1_STRUCT_voxelastica$bridge$CxxPath
 
-::rust::Box<::voxelastica::bridge::CxxInput> parse_toml(::rust::Slice<::std::uint8_t const> text, ::rust::Slice<::std::uint8_t const> file, ::rust::Slice<::std::uint8_t const> folder);
+::rust::Box<::voxelastica::bridge::CxxInput> parse_toml(::rust::Slice<::std::uint8_t const> text, ::rust::Slice<::std::uint8_t const> file, ::rust::Slice<::std::uint8_t const> folder, ::voxelastica::bridge::Progress const &progress);
 
-::rust::Box<::voxelastica::bridge::CxxInput> parse_json(::rust::Slice<::std::uint8_t const> text, ::rust::Slice<::std::uint8_t const> file, ::rust::Slice<::std::uint8_t const> folder);
+::rust::Box<::voxelastica::bridge::CxxInput> parse_json(::rust::Slice<::std::uint8_t const> text, ::rust::Slice<::std::uint8_t const> file, ::rust::Slice<::std::uint8_t const> folder, ::voxelastica::bridge::Progress const &progress);
 
-::rust::Box<::voxelastica::bridge::CxxInput> read(::rust::Slice<::std::uint8_t const> file);
+::rust::Box<::voxelastica::bridge::CxxInput> read(::rust::Slice<::std::uint8_t const> file, ::voxelastica::bridge::Progress const &progress);
 
 ::rust::Box<::voxelastica::bridge::CxxDesign> compute(::voxelastica::bridge::CxxInput const &input, bool allow_large, ::voxelastica::bridge::Progress const &progress);
 
