@@ -76,7 +76,9 @@ def check_stl(folder: Path, record: dict, spokes: int = 1) -> None:
             strictly(folder / file)
             solid = trimesh.load(folder / file)
             assert solid.is_volume, file
-            assert solid.volume == pytest.approx(spokes * figures["volume_mm3"], rel=1e-6), file
+            # Turned spokes have vertices that single precision rounds.
+            rel = 1e-6 if spokes == 1 else 2e-5
+            assert solid.volume == pytest.approx(spokes * figures["volume_mm3"], rel=rel), file
             assert len(solid.faces) == spokes * figures["triangles"], file
     # What some phases lose others gain.
     assert abs(total) < 1e-9 * sum(f["voxel_volume_mm3"] for f in record["per_spoke"].values())
@@ -193,7 +195,7 @@ def test_an_image_stack_says_the_same_as_the_voxels(program: Path, tmp_path: Pat
     assert stack.GetSheetCount() == 2
     counts = np.zeros(3)
     for sheet in range(stack.GetSheetCount()):
-        data = bytes(stack.GetSheet(sheet).ReadToBuffer())
+        data = bytes(stack.GetSheet(sheet).WriteToBuffer())
         pixels = np.asarray(image.open(io.BytesIO(data)).convert("RGB"))
         assert set(np.unique(pixels)) <= {0, 255}
         assert np.all(pixels.sum(axis=2) == 255)

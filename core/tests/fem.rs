@@ -144,10 +144,9 @@ fn a_strip_under_pure_bending_closes_to_half_a_circle() {
         };
         errors.push([found.midline.iter().map(off).fold(0.0, f64::max), (-rim.moment / bending - 1.0).abs()]);
     }
-    let order = |k: usize| (errors[0][k] / errors[2][k]).log2() / 2.0;
-    println!("half circle: errors of place and moment {errors:?}, orders {:.2} {:.2}", order(0), order(1));
-    assert!(errors[2][0] < 2e-4 && errors[2][1] < 5e-3, "{errors:?}");
-    assert!(order(1) > 1.5, "{errors:?}");
+    println!("half circle: errors of place and moment {errors:?}");
+    // What is left does not vanish with the mesh: it is the thickness, (t/R)^2, that the closed form does not know.
+    assert!(errors.iter().all(|[place, moment]| *place < 2e-4 && *moment < 5e-4), "{errors:?}");
 }
 
 #[test]
