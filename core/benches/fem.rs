@@ -15,7 +15,7 @@ fn hemisphere(size: f64, thickness: f64) -> Design {
          {thickness:?}\n[materials]\nphases = [\"FLX9070\", \"FLX9095\"]\n[voxels]\nsize_mm = {size:?}"
     );
     let design = DesignInput::from_text(&text, Format::Toml, "bench", "bench", Path::new("."))
-        .and_then(|input| Ok(Design::compute(&input, Limits::default())));
+        .map(|input| Design::compute(&input, Limits::default()));
     match design {
         Ok(Ok(design)) => design,
         other => panic!("{other:?}"),
