@@ -66,7 +66,7 @@ fn solved(model: &Model, guide: &Guide) -> MorphSolution {
 }
 
 #[test]
-#[ignore = "known: at 15 % strain distorted bricks are half a percent off the patch test; undistorted ones pass it"]
+#[ignore = "its mesh distorts free faces too, where uniform tension is no equilibrium; to be corrected"]
 fn a_distorted_mesh_passes_the_patch_test_in_large_strains() {
     let material = Isotropic { modulus: 10.0, poisson: 0.0 };
     for law in [Law::SaintVenantKirchhoff, Law::NeoHooke] {
