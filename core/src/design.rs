@@ -349,6 +349,12 @@ impl Design {
         Ok(profile)
     }
 
+    /// The final shape by the elastica of the voxels as they are, whatever a refinement found them to lack.
+    pub(crate) fn shape_of_slices(&self) -> Option<MorphPath> {
+        let stiffness = StripStiffness::Slices(self.slices.iter().map(|s| s.section).collect());
+        MorphPath::new(stiffness, self.guide.clone()?, self.forces).ok()
+    }
+
     /// The shape the voxelised strip takes, and how far it is from the target. What a refinement found the mixture to lack
     /// is taken off the sections' stiffness again.
     fn predict(&mut self) {

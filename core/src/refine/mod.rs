@@ -12,10 +12,14 @@
 //! The voxels' modulus is multiplied by `exp(d)`, the voxels are filled again in the same order, and the strip is solved
 //! again. (Mending a fine model by the inverse of a coarse one is known as space mapping.) Unlike the quotient of moment and
 //! curvature, the sensitivity is defined at inflections, where both vanish, and it knows that what is changed at one place
-//! moves the line of thrust everywhere. A step that does not bring the strip closer is tried in part, and the best strip is
-//! kept.
+//! moves the line of thrust everywhere. Voxels are whole, so steps of several lengths are weighed by what the elastica,
+//! corrected by what the solved strips taught, says of the voxels they lead to (`proposal.rs`); the most promising is solved,
+//! of small strips several. The best strip solved is kept.
 
 mod mapping;
+mod proposal;
+
+use proposal::Best;
 
 use crate::design::{Design, Limits};
 use crate::error::Error;
@@ -29,9 +33,12 @@ use crate::results::{EmbeddedOptions, EmbeddedVerification, verify_embedded};
 const FACTORS: usize = 101;
 /// Share by which a step must bring the strip closer to count.
 const WORTHWHILE: f64 = 0.95;
-/// Factor of a step that did not bring the strip closer, and the part of a step below which no other is tried.
-const SHORTER: f64 = 0.6;
-const SHORTEST: f64 = 0.3;
+/// Steps in a row that may fail to come closer.
+const PATIENCE: usize = 3;
+/// Voxels up to which a step solves several promising strips, and how many of every kind of correction: whole voxels answer erratically, small strips are
+/// solved in a fraction of a second.
+const SMALL: usize = 5_000;
+const TRIALS: usize = 3;
 
 /// A refined design.
 #[derive(Debug)]
@@ -62,53 +69,55 @@ pub fn refine(
     let verification = verify_embedded(&design, &options, &|share| progress(part * share))?;
     let mut errors = vec![rounded_error(&verification)];
     let mut factors: Vec<f64> = (0..FACTORS).map(|i| factor(input, i)).collect();
+    let mut lines: Vec<_> = proposal::lines(&design, &verification.verification.midline_mm).into_iter().collect();
+    let mut solved = vec![design.grid().clone()];
     let mut best = (design, verification);
-    let mut change = mapping::change(&best.0, &best.1.verification.midline_mm);
-    let mut size = 1.0;
+    let (mut index, mut failures) = (0, 0);
     for step in 0..iterations {
-        let Some(wanted) = &change else { break };
-        let tried = corrected(&best.0, &factors, wanted, size);
-        let mut next = input.clone();
-        next.refine = Some(RefineInput { iterations, correction: tried.clone(), errors_percent: Vec::new() });
-        let started = part * (step + 1) as f64;
-        let design = Design::compute(&next, limits)?;
-        let verification = match verify_embedded(&design, &options, &|share| progress(started + part * share)) {
-            Ok(verification) => verification,
-            Err(Error::Solver(_)) => break,
-            Err(error) => return Err(error),
-        };
-        let error = rounded_error(&verification);
-        let so_far = errors.iter().copied().fold(f64::INFINITY, f64::min);
-        errors.push(error);
-        if error < so_far {
-            let worthwhile = error < WORTHWHILE * so_far;
-            best = (design, verification);
-            factors = tried;
-            change = mapping::change(&best.0, &best.1.verification.midline_mm);
-            size = 1.0;
-            if !worthwhile {
-                break;
+        let (design, midline) = (&best.0, best.1.verification.midline_mm.as_slice());
+        let small = design.grid().phases().len() <= SMALL;
+        let known =
+            Best { design, factors: &factors, midline, lines: &lines, index, solved: &solved, limits, iterations };
+        let mut proposals = known.next(if small { TRIALS } else { 1 });
+        if !small {
+            proposals.truncate(1);
+        }
+        let (mut helped, share_of_each) = (false, part / proposals.len().max(1) as f64);
+        for (trial, next) in proposals.into_iter().enumerate() {
+            let started = part * (step + 1) as f64 + share_of_each * trial as f64;
+            let told = |share: f64| progress(started + share_of_each * share);
+            let verification = match verify_embedded(&next.design, &options, &told) {
+                Ok(verification) => verification,
+                Err(Error::Solver(_)) => continue,
+                Err(error) => return Err(error),
+            };
+            let error = rounded_error(&verification);
+            let so_far = errors.iter().copied().fold(f64::INFINITY, f64::min);
+            errors.push(error);
+            let Some(both) = proposal::lines(&next.design, &verification.verification.midline_mm) else { continue };
+            lines.push(both);
+            solved.push(next.design.grid().clone());
+            helped |= error < WORTHWHILE * so_far;
+            if error < so_far {
+                (factors, best, index) = (next.factors, (next.design, verification), lines.len() - 1);
             }
-        } else {
-            // Whole voxels answer a small change erratically: another part of it may do.
-            size *= SHORTER;
-            if size < SHORTEST {
-                break;
-            }
+        }
+        failures = if helped { 0 } else { failures + 1 };
+        if failures == PATIENCE {
+            break;
         }
     }
     recorded(best, limits, iterations, errors)
 }
 
-/// The factors after a change of their logarithm, or the part of it given by `size`.
-fn corrected(design: &Design, factors: &[f64], change: &[f64], size: f64) -> Vec<f64> {
+/// The factors after a change of their logarithm.
+fn corrected(design: &Design, factors: &[f64], change: impl Fn(f64) -> f64) -> Vec<f64> {
     let [least, most] = RefineInput::FACTORS;
     let value = |(i, factor): (usize, &f64)| {
         let share = i as f64 / (FACTORS - 1) as f64;
         let (low, high) = reach(design, share);
-        let changed = factor.clamp(low, high) * (size * mapping::at(change, share)).exp();
         // Rounded, so that the design and its hash do not hang on the last digits of a sum.
-        round(changed, 1e-6).clamp(least, most)
+        round(factor.clamp(low, high) * change(share).exp(), 1e-6).clamp(least, most)
     };
     factors.iter().enumerate().map(value).collect()
 }

@@ -1,0 +1,113 @@
+//! Which voxels to solve next.
+//!
+//! Voxels are whole: a slice of a few dozen of them answers a change of its modulus by steps, and a symmetric pattern by
+//! steps of two columns. So a correction is chosen by what the voxels that it leads to are expected to do: their mid-line by
+//! the elastica, corrected by what the solved strips taught ([`Mapping`]).
+
+use nalgebra::DVector;
+
+use crate::design::{Design, Limits};
+use crate::input::DesignInput;
+use crate::input::model::RefineInput;
+use crate::results::MidlinePoint;
+use crate::voxel::VoxelGrid;
+
+use super::corrected;
+use super::mapping::{KNOTS, Mapping, Penalty, Sensitivity, at, line};
+
+/// Penalties of the least squares with their weights, and parts of the step, that are tried.
+const PENALTIES: [(Penalty, [f64; 3]); 2] = [(Penalty::Size, [0.02, 0.05, 0.15]), (Penalty::Bends, [0.05, 0.2, 0.8])];
+const SIZES: [f64; 6] = [0.3, 0.5, 0.7, 0.85, 1.0, 1.15];
+/// Changes of the factor's logarithm at single knots.
+const TOUCHES: [f64; 4] = [-0.2, -0.08, 0.08, 0.2];
+/// Weight of the mean misfit beside the largest.
+const MEAN: f64 = 0.1;
+
+/// A correction, and the design it leads to.
+pub(super) struct Proposal {
+    pub(super) factors: Vec<f64>,
+    pub(super) design: Design,
+    /// Misfit that is expected of it, mm.
+    expected: f64,
+}
+
+/// The best strip so far, and what is known of the others.
+pub(super) struct Best<'a> {
+    pub(super) design: &'a Design,
+    pub(super) factors: &'a [f64],
+    /// Its mid-line by the finite elements.
+    pub(super) midline: &'a [MidlinePoint],
+    /// The same and that of the elastica, of all solved strips.
+    pub(super) lines: &'a [[DVector<f64>; 2]],
+    /// Its place among them.
+    pub(super) index: usize,
+    /// The voxels that were solved.
+    pub(super) solved: &'a [VoxelGrid],
+    pub(super) limits: Limits,
+    pub(super) iterations: usize,
+}
+
+/// Mid-lines of a solved strip at the stations of its finite elements: by them, and by the elastica of its voxels; `None`
+/// where it does not answer.
+pub(super) fn lines(design: &Design, midline: &[MidlinePoint]) -> Option<[DVector<f64>; 2]> {
+    let path = design.shape_of_slices()?;
+    let fine = DVector::from_iterator(2 * midline.len(), midline.iter().flat_map(|[_, x, z]| [*x, *z]));
+    Some([fine, line(midline, |s| path.final_shape().position(s))])
+}
+
+impl Best<'_> {
+    /// The voxels, other than those solved, that promise to come closest to the target: at most `most` of every kind of
+    /// correction, the most promising first; none where the elastica does not answer.
+    pub(super) fn next(&self, most: usize) -> Vec<Proposal> {
+        let mut promising: Vec<Proposal> = Vec::new();
+        for candidates in self.candidates().unwrap_or_default() {
+            let end = promising.len() + most;
+            for tried in candidates {
+                let known = |other: &Proposal| other.design.grid() == tried.design.grid();
+                if !promising.iter().any(known) && !self.solved.contains(tried.design.grid()) {
+                    let start = end - most;
+                    let place = start + promising[start..].partition_point(|other| other.expected <= tried.expected);
+                    promising.insert(place, tried);
+                    promising.truncate(end);
+                }
+            }
+        }
+        promising.sort_by(|a, b| a.expected.total_cmp(&b.expected));
+        promising
+    }
+
+    /// Corrections by every penalty, and at single knots.
+    fn candidates(&self) -> Option<[Vec<Proposal>; 3]> {
+        let own = self.lines.get(self.index)?;
+        let target = line(self.midline, |s| self.design.profile().position(s));
+        let mapping = Mapping::new(own, self.lines);
+        let sensitivity = Sensitivity::new(self.design, self.midline, &(&own[0] - &target), &mapping)?;
+        let expect = |change: &[f64], size: f64| {
+            let factors = corrected(self.design, self.factors, |share| size * at(change, share));
+            self.expect(factors, &mapping, &target)
+        };
+        let [sizes, bends] = PENALTIES.map(|(penalty, weights)| {
+            let changes = weights.iter().filter_map(|weight| sensitivity.change(penalty, *weight));
+            changes.flat_map(|change| SIZES.map(|size| expect(&change, size))).flatten().collect()
+        });
+        let knot = |k: usize| std::array::from_fn::<f64, KNOTS, _>(|i| if i == k { 1.0 } else { 0.0 });
+        let touches = (0..KNOTS).flat_map(|k| TOUCHES.map(|size| expect(&knot(k), size))).flatten().collect();
+        Some([sizes, bends, touches])
+    }
+
+    /// What is to be expected of a correction.
+    fn expect(&self, factors: Vec<f64>, mapping: &Mapping, target: &DVector<f64>) -> Option<Proposal> {
+        let mut input: DesignInput = self.design.input().clone();
+        let correction = factors.clone();
+        input.refine = Some(RefineInput { iterations: self.iterations, correction, errors_percent: Vec::new() });
+        let design = Design::compute(&input, self.limits).ok()?;
+        let path = design.shape_of_slices()?;
+        let [fine, coarse] = self.lines.get(self.index)?;
+        let moved = line(self.midline, |s| path.final_shape().position(s)) - coarse;
+        let off = fine + mapping.fine(&moved) - target;
+        let distances = off.as_slice().chunks_exact(2).map(|d| d[0].hypot(d[1]));
+        let (largest, sum) = distances.fold((0.0_f64, 0.0), |(largest, sum), d| (largest.max(d), sum + d * d));
+        let expected = largest + MEAN * (sum / self.midline.len() as f64).sqrt();
+        Some(Proposal { factors, design, expected })
+    }
+}
