@@ -5,8 +5,10 @@ use std::ffi::c_char;
 use std::ptr;
 
 use voxelastica::array::{ArrayF64, ArrayU32};
+use voxelastica::conduct::*;
 use voxelastica::design::*;
 use voxelastica::error::*;
+use voxelastica::fabricate::*;
 use voxelastica::flower::*;
 use voxelastica::input::*;
 use voxelastica::lists::*;
@@ -15,6 +17,7 @@ use voxelastica::path::*;
 use voxelastica::profile::*;
 use voxelastica::status::Status;
 use voxelastica::text::*;
+use voxelastica::verify::*;
 use voxelastica::voxels::*;
 
 /// Calls of one sequence.
@@ -113,7 +116,7 @@ fn step(kind: u8, dice: &mut Dice<'_>, handles: &mut Handles) {
     let e = &raw mut error;
     // SAFETY: outputs are writable, texts and buffers as long as they say; handles are only looked up.
     let status = unsafe {
-        match kind % 20 {
+        match kind % 24 {
             0 | 1 => {
                 let text = design_text(dice);
                 let (data, length) = (text.as_ptr().cast::<c_char>(), text.len());
@@ -196,6 +199,44 @@ fn step(kind: u8, dice: &mut Dice<'_>, handles: &mut Handles) {
                 status
             }
             18 => sum(|array| voxelastica_path_column(handles.any(dice), dice.number() as i32, array, e)),
+            19 => {
+                let (mut text, design, model) = (ptr::null_mut(), handles.any(dice), dice.number() as i32 % 3);
+                if !solvable(design) {
+                    return;
+                }
+                let status = voxelastica_design_verify(design, model, None, ptr::null_mut(), &raw mut text, e);
+                handles.keep(text);
+                status
+            }
+            20 => {
+                let (mut refined, design, most) = (ptr::null_mut(), handles.any(dice), dice.number());
+                if !solvable(design) {
+                    return;
+                }
+                let (most, user) = (if most > 2 { 0 } else { most }, ptr::null_mut());
+                let status = voxelastica_design_refine(design, most, false, None, user, &raw mut refined, e);
+                handles.keep(refined);
+                status
+            }
+            21 => {
+                let (mut text, design, user) = (ptr::null_mut(), handles.any(dice), ptr::null_mut());
+                if !solvable(design) {
+                    return;
+                }
+                let mut choice = || dice.number() as i32 % 4;
+                let (flow, model, shape, regime) = (choice(), choice(), choice(), choice());
+                let status =
+                    voxelastica_design_conduct(design, flow, model, shape, regime, None, user, &raw mut text, e);
+                handles.keep(text);
+                status
+            }
+            22 => {
+                // Nothing can be written there.
+                let (folder, mut text, user) = (b"/dev/null/folder", ptr::null_mut(), ptr::null_mut());
+                let (design, kinds) = (handles.any(dice), dice.number() as u32);
+                let (data, length) = (folder.as_ptr().cast(), folder.len());
+                voxelastica_design_fabricate(design, data, length, kinds, false, None, user, &raw mut text, e)
+            }
             _ => {
                 let freed: [Status; 4] = [
                     voxelastica_mesh_free(handles.any(dice)),
@@ -228,6 +269,16 @@ fn sum(lend: impl FnOnce(*mut ArrayF64) -> Status) -> Status {
     }
     std::hint::black_box(total);
     status
+}
+
+/// Whether a design, or what is none, is small enough to be solved many times.
+fn solvable(design: *const DesignObject) -> bool {
+    let (mut voxels, name) = (0.0, "voxels_per_spoke");
+    // SAFETY: the output is writable.
+    unsafe {
+        voxelastica_design_figure(design, name.as_ptr().cast(), name.len(), &raw mut voxels, ptr::null_mut());
+    }
+    voxels < 1000.0
 }
 
 /// Whether an input is small enough to be computed thousands of times.

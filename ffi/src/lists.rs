@@ -35,6 +35,8 @@ pub struct MaterialRecord {
     pub specific_heat_j_kgk: f64,
     /// Electrical conductivity, S/m.
     pub electrical_conductivity_s_m: f64,
+    /// Permittivity over that of the vacuum.
+    pub relative_permittivity: f64,
     /// Largest principal strain the material stands.
     pub max_strain: f64,
 }
@@ -126,6 +128,7 @@ pub unsafe extern "C" fn voxelastica_materials_get(
                 conductivity_w_mk: known(m.conductivity_w_mk),
                 specific_heat_j_kgk: known(m.specific_heat_j_kgk),
                 electrical_conductivity_s_m: known(m.electrical_conductivity_s_m),
+                relative_permittivity: known(m.relative_permittivity),
                 max_strain: known(m.max_strain),
             });
             Ok(())
@@ -226,7 +229,7 @@ pub extern "C" fn voxelastica_abi_version() -> u32 {
 }
 
 /// Version of the interface that this header describes.
-pub const ABI_VERSION: u32 = 2;
+pub const ABI_VERSION: u32 = 3;
 
 /// Number of objects that callers hold at present: to find leaks.
 #[unsafe(no_mangle)]

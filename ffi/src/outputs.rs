@@ -75,8 +75,8 @@ pub fn write(design: &Design, folder: &Path, bits: u32, allow_large: bool, watch
 
 /// Writes outputs of the kinds `kinds` (`voxelastica_output`, combined) into a folder, which is made where it does not
 /// exist. Either all files get their names or none. Of the decks those are written that the design has (`decks.write`,
-/// `decks.solvers`). `progress` may be null and is told bytes. `files` (null: not wanted) becomes a JSON list of the files'
-/// paths relative to the folder. More than the free disk is refused unless `allow_large`.
+/// `decks.solvers`). `progress` may be null and is told bytes (of print files, voxels). `files` (null: not
+/// wanted) becomes a JSON list of the files' paths relative to the folder. More than the free disk is refused unless `allow_large`.
 ///
 /// # Safety
 /// `folder` is null or points to `folder_length` bytes; `progress` may be called with `user` on this thread during the

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-ABI_VERSION = 2
+ABI_VERSION = 3
 
 _NAMES = {"win32": "voxelastica.dll", "darwin": "libvoxelastica.dylib"}
 
@@ -48,6 +48,7 @@ class Material(c.Structure):
         ("conductivity_w_mk", c.c_double),
         ("specific_heat_j_kgk", c.c_double),
         ("electrical_conductivity_s_m", c.c_double),
+        ("relative_permittivity", c.c_double),
         ("max_strain", c.c_double),
     ]
 
