@@ -44,7 +44,15 @@ pub(super) fn morph_step(design: &Design) -> Value {
 
 /// Rows of the material whose modulus is a field equal to itself, softest first; between them everything is linear.
 pub(super) fn graded_material(design: &Design) -> Value {
-    let rows = materials::mixtures(design.phases());
-    let row = |r: &materials::Mixture| json!({ "modulus_mpa": r.modulus, "poisson": r.poisson, "density_tonne_mm3": r.density });
+    let phases = design.phases();
+    let rows = materials::mixtures(phases);
+    let row = |r: &materials::Mixture| {
+        json!({
+            "modulus_mpa": r.modulus,
+            "poisson": r.poisson,
+            "density_tonne_mm3": r.density,
+            "fractions": phases.fractions(r.modulus).values[..phases.phases().len()],
+        })
+    };
     json!({ "rows": rows.iter().map(row).collect::<Vec<_>>() })
 }
