@@ -168,9 +168,7 @@ class Stubs:
             args = node.args
             positional = [*args.posonlyargs, *args.args][0 if static or not bound else 1 :]
             defaults = len(args.defaults)
-            params = [
-                self._param(a, i >= len(positional) - defaults, False) for i, a in enumerate(positional)
-            ]
+            params = [self._param(a, i >= len(positional) - defaults, False) for i, a in enumerate(positional)]
             params += [
                 self._param(a, d is not None, True) for a, d in zip(args.kwonlyargs, args.kw_defaults, strict=True)
             ]

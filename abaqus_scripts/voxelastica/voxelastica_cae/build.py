@@ -8,6 +8,10 @@ from abaqusConstants import GIGA_BYTES, MEGA_BYTES, PERCENTAGE
 from . import VoxelasticaError, design as designs, estimate, shell_flower, undo, voxel_mesh, voxel_strip
 from .messages import say
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any  # novm
+
 #: What can be built: the voxel strip partitioned or imported, the flower of shells; "auto" is the strip as recommended.
 KINDS = ("auto", "geometry", "mesh", "shell")
 _UNITS = {"percent": PERCENTAGE, "mb": MEGA_BYTES, "gb": GIGA_BYTES}
@@ -116,6 +120,7 @@ def _refuse_names(design, kind, name, job):
 
 def _job(design, model, name, options):
     """The job with the user's cores and memory."""
+    unit = _UNITS[options.memory_unit]  # type: Any
     job = mdb.Job(
         name=name,
         model=model,
@@ -123,7 +128,7 @@ def _job(design, model, name, options):
         numCpus=options.cores,
         numDomains=options.cores,
         memory=options.memory,
-        memoryUnits=_UNITS[options.memory_unit],
+        memoryUnits=unit,
     )
     if options.write_input:
         try:

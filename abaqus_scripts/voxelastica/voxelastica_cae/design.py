@@ -9,7 +9,7 @@ import os
 from . import SCHEMA, VoxelasticaError
 
 try:
-    _TEXT = (unicode,)  # noqa: F821  Python 2
+    _TEXT = (unicode,)  # noqa: F821  # pyright: ignore[reportUndefinedVariable]  Python 2
 except NameError:
     _TEXT = ()
 
@@ -168,5 +168,3 @@ def read(path):
         )
     design._check()
     return design
-
-

@@ -11,9 +11,10 @@ terminal = False
 def say(text):
     """Prints a line into CAE's message area, and to the terminal in a run without windows."""
     print(text)
-    if terminal and sys.stdout is not sys.__stdout__:
-        sys.__stdout__.write(text + "\n")
-        sys.__stdout__.flush()
+    original = sys.__stdout__
+    if terminal and original is not None and sys.stdout is not original:
+        original.write(text + "\n")
+        original.flush()
 
 
 def refuse(error):

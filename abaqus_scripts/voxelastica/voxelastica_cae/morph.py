@@ -2,7 +2,17 @@
 
 from __future__ import division
 
-from abaqusConstants import OFF, ON, STEP
+from abaqusConstants import OFF, ON, STEP, UNSET
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:  # type comments only: ABAQUS has no such modules
+    from typing import Iterable  # novm
+
+    from abaqus.Datum.Datum import Datum
+    from abaqus.Model.Model import Model
+    from abaqus.Region.Set import Set
+
+    from .design import Design, Motion
 
 #: Name of the step, as in the decks.
 STEP_NAME = "MORPH"
@@ -12,6 +22,7 @@ _MANY_NODES = 25000
 
 
 def step(model, design):
+    # type: (Model, Design) -> None
     """The static step with large displacements and its amplitudes; returns nothing.
 
     Requests that CAE adds to a model's first step by itself are taken out: those of the morph follow.
@@ -38,24 +49,41 @@ def step(model, design):
 
 
 def _drive(model, name, region, csys, motion, component):
+    # type: (Model, str, Set, Datum | None, Motion, str) -> None
     """Moves one component along its amplitude."""
+    values = {component: motion.value}
     model.DisplacementBC(
         name=name,
         createStepName=STEP_NAME,
         region=region,
+        u1=values.get("u1", UNSET),
+        u3=values.get("u3", UNSET),
+        ur2=values.get("ur2", UNSET),
         amplitude=motion.amplitude,
-        localCsys=csys,
-        **{component: motion.value}
+        localCsys=csys,  # pyright: ignore[reportArgumentType]  the datum itself, as CAE records it
     )
 
 
 def _hold(model, name, region, csys, components):
+    # type: (Model, str, Set, Datum | None, list[str]) -> None
     """Holds components at zero."""
     values = dict((component, 0.0) for component in components)
-    model.DisplacementBC(name=name, createStepName=STEP_NAME, region=region, localCsys=csys, **values)
+    model.DisplacementBC(
+        name=name,
+        createStepName=STEP_NAME,
+        region=region,
+        u1=values.get("u1", UNSET),
+        u2=values.get("u2", UNSET),
+        u3=values.get("u3", UNSET),
+        ur1=values.get("ur1", UNSET),
+        ur2=values.get("ur2", UNSET),
+        ur3=values.get("ur3", UNSET),
+        localCsys=csys,  # pyright: ignore[reportArgumentType]  the datum itself, as CAE records it
+    )
 
 
 def rim(model, design, region, suffix="", csys=None):
+    # type: (Model, Design, Set, str, Datum | None) -> None
     """Moves a rim's reference point: inward, and about the axis across; all else is held.
 
     ``csys`` is the spoke's system (1 inward, 2 across, 3 up), None where the model's is that already.
@@ -70,6 +98,7 @@ def rim(model, design, region, suffix="", csys=None):
 
 
 def hub(model, design, region, suffix="", csys=None, height=True):
+    # type: (Model, Design, Set, str, Datum | None, bool) -> None
     """Turns a hub end's reference point and, where the hub is held and ``height`` is asked for, raises it."""
     held = ["u1", "u2", "ur1", "ur3"]
     if design.hub_rotation.moves:
@@ -85,6 +114,7 @@ def hub(model, design, region, suffix="", csys=None, height=True):
 
 
 def middle(model, design, region):
+    # type: (Model, Design, Set) -> None
     """Holds the rigid hub of a flower level; it rises freely, or to its height where it is held."""
     if design.hub_height is not None and design.hub_height.moves:
         _drive(model, design.hub_height.amplitude, region, None, design.hub_height, "u3")
@@ -96,6 +126,7 @@ def middle(model, design, region):
 
 
 def outputs(model, sets, nodes, midline, references, variables=("S", "LE")):
+    # type: (Model, dict[str, Set], int, str, Iterable[str], tuple[str, ...]) -> None
     """Displacements and stresses of the whole model now and then; the mid-line and the reactions in every increment.
 
     Reactions are asked for in the axes of the reference points' own systems.

@@ -27,7 +27,19 @@ from abaqusConstants import (
     XZPLANE,
 )
 
-from . import materials, morph
+from . import ends, materials, morph
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:  # type comments only: ABAQUS has no such modules
+    from typing import Any  # novm
+
+    from abaqus.Assembly.Assembly import Assembly
+    from abaqus.Datum.Datum import Datum
+    from abaqus.Model.Model import Model
+    from abaqus.Part.Part import Part
+    from abaqus.Region.Set import Set
+
+    from .design import Design
 
 PART = "SPOKE"
 HUB_PART = "HUB-PLATE"
@@ -40,6 +52,7 @@ _SLACK = 1e-5
 
 
 def names(design):
+    # type: (Design) -> dict[str, list[str]]
     """Names that the model must not have yet: a dict from repository to names."""
     spokes = range(1, design.count + 1)
     sets = ["HUB", "HUB-PLATE", "RP-HUB", "RP-RIMS", "RP-HUBS"]
@@ -58,6 +71,7 @@ def names(design):
 
 
 def build(model, design, mesh=True):
+    # type: (Model, Design, bool) -> None
     """Builds parts, sections, fields, assembly, constraints, step and outputs in a model."""
     materials.graded(model, design, GRADED)
     stiffest = design.phases[-1]
@@ -94,6 +108,7 @@ def build(model, design, mesh=True):
 
 
 def outline(design):
+    # type: (Design) -> list[tuple[float, float]]
     """Points of the spoke's upper edge, rim first: [(x, y)] in mm in the flower's frame."""
     s, width = design.profile["s_mm"], design.profile["width_mm"]
     every = max(1, (len(s) - 1) // _OUTLINE)
@@ -102,6 +117,7 @@ def outline(design):
 
 
 def _spoke(model, design):
+    # type: (Model, Design) -> Part
     """The part of all spokes: half above and half below its mid-line, seeded and with a section."""
     upper = outline(design)
     lower = [(x, -y) for x, y in upper]
@@ -139,6 +155,7 @@ def _spoke(model, design):
 
 
 def _seed(part, design, upper):
+    # type: (Part, Design, list[tuple[float, float]]) -> None
     """Elements along and across as in the deck, swept along the mid-line."""
     along, across = design.decks["shell_elements"]
     narrow = 0.25 * min(y for _, y in upper)
@@ -165,12 +182,11 @@ def _edges(of, design, upper, x=None, y=None, side=None):
         low[1], high[1] = y - slack, y + slack
     if side is not None:
         (low if side > 0 else high)[1] = side
-    return of.edges.getByBoundingBox(
-        xMin=low[0], yMin=low[1], zMin=-slack, xMax=high[0], yMax=high[1], zMax=slack
-    )
+    return of.edges.getByBoundingBox(xMin=low[0], yMin=low[1], zMin=-slack, xMax=high[0], yMax=high[1], zMax=slack)
 
 
 def _hub(model, design):
+    # type: (Model, Design) -> Part
     """The hub: a polygon whose edges the spokes meet."""
     half = math.pi / design.count
     radius = design.hub_radius / math.cos(half)
@@ -192,6 +208,7 @@ def _hub(model, design):
 
 
 def _phase_sets(part, design, mesh):
+    # type: (Part, Design, bool) -> None
     """Part sets PHASE-NAME: where the mixture contains the phase, by elements unless that is everywhere."""
     end, slack = design.hub_radius + design.length, _SLACK * design.length
     step, wide = design.length / design.decks["shell_elements"][0], max(design.profile["width_mm"])
@@ -227,6 +244,7 @@ def _stretches(s, within):
 
 
 def fraction(design, phase, modulus):
+    # type: (Design, int, float) -> float
     """Share of a phase in the mixture of this modulus: linear between the rows of the design's table."""
     rows = design.rows
     if modulus <= rows[0]["modulus_mpa"]:
@@ -239,12 +257,14 @@ def fraction(design, phase, modulus):
 
 
 def outward(design, i):
+    # type: (Design, int) -> tuple[float, ...]
     """Unit vector from the hub along spoke i, exact along the axes."""
     angle = 2.0 * math.pi * (i - 1) / design.count
     return tuple(0.0 if abs(c) < 1e-14 else c for c in (math.cos(angle), math.sin(angle)))
 
 
 def _place(model, part, design, i):
+    # type: (Model, Part, Design, int) -> Datum
     """Instance i with its system, sets, rigid ends, field and predefined field; returns the datum system.
 
     Edges are sought before the instance is turned: there they lie along the axes.
@@ -274,17 +294,12 @@ def _place(model, part, design, i):
     )
     csys = assembly.datums[axes.id]
     for end, at in (("RIM", rim), ("HUB", hub)):
-        point = assembly.ReferencePoint(point=at)
-        assembly.Set(name="RP-" + end + suffix, referencePoints=(assembly.referencePoints[point.id],))
-        model.RigidBody(
-            name=end + suffix,
-            refPointRegion=assembly.sets["RP-" + end + suffix],
-            tieRegion=assembly.sets[end + suffix],
-        )
+        ends.reference_point(assembly, "RP-" + end + suffix, at)
+        ends.tie(model, end + suffix, end + suffix)
     field = "MODULUS" + suffix
-    model.ExpressionField(
+    model.ExpressionField(  # pyright: ignore[reportAttributeAccessIssue]  the stubs forgot the base class
         name=field,
-        localCsys=csys,  # pyright: ignore[reportArgumentType]  the datum itself, as CAE records it
+        localCsys=csys,
         description="Young's modulus in MPa, X in mm from the rim",
         expression=design.expression,
     )
@@ -293,6 +308,7 @@ def _place(model, part, design, i):
 
 
 def _modulus(model, name, region, distributionType, field, magnitude):
+    # type: (Model, str, Set, Any, str, float) -> None
     """The temperature that is the modulus: the field's value times the magnitude, or the magnitude alone."""
     model.Temperature(
         name=name,
@@ -306,20 +322,21 @@ def _modulus(model, name, region, distributionType, field, magnitude):
 
 
 def _middle(model, part, design):
+    # type: (Model, Part, Design) -> None
     """The rigid hub plate with its reference point."""
     assembly = model.rootAssembly
     instance = assembly.Instance(name="HUB-PLATE-1", part=part, dependent=ON)
     assembly.Set(name="HUB", faces=instance.faces)
     assembly.Set(name="HUB-PLATE", faces=instance.faces)
-    point = assembly.ReferencePoint(point=(0.0, 0.0, 0.0))
-    assembly.Set(name="RP-HUB", referencePoints=(assembly.referencePoints[point.id],))
-    model.RigidBody(name="HUB", refPointRegion=assembly.sets["RP-HUB"], tieRegion=assembly.sets["HUB-PLATE"])
+    ends.reference_point(assembly, "RP-HUB", (0.0, 0.0, 0.0))
+    ends.tie(model, "HUB", "HUB-PLATE")
     # Its material does not depend on the temperature; a value makes a plot of the modulus complete.
     modulus = float(design.phases[-1]["modulus_mpa"])
     _modulus(model, "MODULUS-HUB", assembly.sets["HUB"], distributionType=UNIFORM, field="", magnitude=modulus)
 
 
 def _reference_sets(assembly, design):
+    # type: (Assembly, Design) -> None
     """Sets of all rims' and all hub ends' reference points."""
     for name in ("RP-RIM", "RP-HUB"):
         points = tuple(assembly.sets["%s-%d" % (name, i)].referencePoints[0] for i in range(1, design.count + 1))

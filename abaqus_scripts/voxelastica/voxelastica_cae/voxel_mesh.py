@@ -7,8 +7,16 @@ import io
 from . import VoxelasticaError
 from .messages import say
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:  # type comments only: ABAQUS has no such modules
+    from abaqus.Mdb.Mdb import Mdb
+    from abaqus.Model.Model import Model
+
+    from .design import Design
+
 
 def checked_deck(design):
+    # type: (Design) -> str
     """Path of the design's voxel deck; raises VoxelasticaError where it is missing or of another design."""
     path = design.deck("voxel_solid")
     try:
@@ -22,6 +30,7 @@ def checked_deck(design):
 
 
 def build(mdb, design, name):
+    # type: (Mdb, Design, str) -> Model
     """Imports abaqus/voxel_solid.inp as a new model and checks its sets against the design; returns the model.
 
     Sections, constraints, step and outputs are the deck's. `name` must not be a model yet.

@@ -6,17 +6,29 @@ its instance lowered by half the thickness.
 
 from __future__ import division
 
-from abaqus import milestone
+from abaqus import milestone  # pyright: ignore[reportAttributeAccessIssue]  not in the stub
 from abaqusConstants import CARTESIAN, DEFORMABLE_BODY, HEX, ON, STRUCTURED, THREE_D, XYPLANE, XZPLANE, YZPLANE
 
-from . import VoxelasticaError, cells, materials, morph
+from . import VoxelasticaError, cells, ends, materials, morph
 from .messages import say
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:  # type comments only: ABAQUS has no such modules
+    from typing import Any  # novm
+
+    from abaqus.Assembly.Assembly import Assembly
+    from abaqus.BasicGeometry.CellArray import CellArray
+    from abaqus.Model.Model import Model
+    from abaqus.Part.Part import Part
+
+    from .design import Design
 
 PART = "SPOKE"
 INSTANCE = "SPOKE-1"
 
 
 def outline(design):
+    # type: (Design) -> list[tuple[float, float]]
     """Corners of the stepped outline, counter-clockwise from the rim's lower corner: [(x, y)] in mm."""
     edge, halves = design.edge, design.half_widths
     upper = [(0.0, halves[0] * edge)]
@@ -28,6 +40,7 @@ def outline(design):
 
 
 def names(design):
+    # type: (Design) -> dict[str, list[str]]
     """Names that the model must not have yet: a dict from repository to names."""
     return {
         "parts": [PART],
@@ -41,6 +54,7 @@ def names(design):
 
 
 def check(design):
+    # type: (Design) -> None
     """Raises VoxelasticaError where a strip cannot be built as geometry."""
     if not design.listed:
         raise VoxelasticaError(
@@ -55,6 +69,7 @@ def check(design):
 
 
 def build(model, design, mesh=True, find="auto"):
+    # type: (Model, Design, bool, str) -> None
     """Builds part, sections, assembly, constraints, step and outputs in a model.
 
     ``mesh``: generate the mesh. ``find``: how cells are found, "planes", "runs" or "auto" (see cells.py).
@@ -80,6 +95,7 @@ def build(model, design, mesh=True, find="auto"):
 
 
 def _solid(model, design):
+    # type: (Model, Design) -> Part
     corners = outline(design)
     sketch = model.ConstrainedSketch(name="__voxelastica__", sheetSize=2.0 * design.length)
     for start, end in zip(corners, corners[1:] + corners[:1]):
@@ -91,9 +107,11 @@ def _solid(model, design):
 
 
 def _partition(part, design):
+    # type: (Part, Design) -> None
     """Cuts the solid at every voxel plane: layers, slices, columns."""
     edge, most = design.edge, max(design.half_widths)
-    cuts = [(XYPLANE, layer * edge) for layer in range(1, design.layers)]
+    cuts = []  # type: list[tuple[Any, float]]
+    cuts += [(XYPLANE, layer * edge) for layer in range(1, design.layers)]
     cuts += [(YZPLANE, i * edge) for i in range(1, design.slices)]
     cuts += [(XZPLANE, j * edge) for j in range(1 - most, most)]
     for done, (plane, offset) in enumerate(cuts):
@@ -108,6 +126,7 @@ def _partition(part, design):
 
 
 def _box(part, design, slices=None, layers=None, columns=None):
+    # type: (Part, Design, tuple[int, int] | None, tuple[int, int] | None, tuple[int, int] | None) -> CellArray
     """The cells inside a box of voxels; ranges (first, end), all where None."""
     edge, slack, most = design.edge, 0.1 * design.edge, max(design.half_widths)
     x, z, y = slices or (0, design.slices), layers or (0, design.layers), columns or (-most, most)
@@ -122,6 +141,7 @@ def _box(part, design, slices=None, layers=None, columns=None):
 
 
 def _sets(part, design, find):
+    # type: (Part, Design, str) -> None
     """Part sets SLICE-i and PHASE-NAME."""
     slabs = [_box(part, design, slices=(i, i + 1)) for i in range(design.slices)]
     for i, slab in enumerate(slabs):
@@ -129,7 +149,8 @@ def _sets(part, design, find):
     boxes = cells.runs(design) if find != "planes" else []
     asked = cells.planes(design) - design.slices
     if find == "runs" or (find == "auto" and len(boxes) <= asked):
-        return _check(part, design, _by_runs(part, design, boxes))
+        _check(part, design, _by_runs(part, design, boxes))
+        return
     problem = _check(part, design, _by_planes(part, design, slabs), strict=find == "planes")
     if problem:
         say("Voxelastica: %s; looking the voxels up run by run, which takes longer" % problem)
@@ -137,6 +158,7 @@ def _sets(part, design, find):
 
 
 def _by_planes(part, design, slabs):
+    # type: (Part, Design, list[CellArray]) -> dict | None
     """Cells of each present phase from the indices of slices, layers and columns."""
     most = max(design.half_widths)
     slice_of, layer_of, column_of = {}, {}, {}
@@ -160,6 +182,7 @@ def _by_planes(part, design, slabs):
 
 
 def _by_runs(part, design, boxes):
+    # type: (Part, Design, list) -> dict
     """Cells of each present phase, one question a run of equal voxels."""
     parts = [[] for _ in design.phases]
     for done, (phase, slices, layers, columns) in enumerate(boxes):
@@ -178,9 +201,11 @@ def _by_runs(part, design, boxes):
 
 
 def _check(part, design, found, strict=True):
+    # type: (Part, Design, dict | None, bool) -> str
     """Makes the sets of the phases if they hold as many cells as the design has voxels; else says what is wrong."""
-    problem = "the planes of voxels do not hold every cell" if found is None else ""
-    for phase in design.present() if found is not None else []:
+    problem = "" if found else "the planes of voxels do not hold every cell"
+    found = found or {}
+    for phase in design.present() if found else []:
         count, wanted = len(found.get(phase["label"], ())), design.counts[phase["label"]]
         if count != wanted:
             problem = "%d cells were found for %d voxels of %s" % (count, wanted, phase["name"])
@@ -193,6 +218,7 @@ def _check(part, design, found, strict=True):
 
 
 def _assemble(model, part, design, mesh):
+    # type: (Model, Part, Design, bool) -> Assembly
     """Instance, reference points, sets of the ends and the mid-line, rigid ends."""
     assembly = model.rootAssembly
     assembly.DatumCsysByDefault(coordSysType=CARTESIAN)
@@ -209,9 +235,8 @@ def _assemble(model, part, design, mesh):
             zMax=thick + slack,
         )
         assembly.Set(name=name, faces=faces)
-        point = assembly.ReferencePoint(point=(x, 0.0, 0.0))
-        assembly.Set(name="RP-" + name, referencePoints=(assembly.referencePoints[point.id],))
-        model.RigidBody(name=name, refPointRegion=assembly.sets["RP-" + name], pinRegion=assembly.sets[name])
+        ends.reference_point(assembly, "RP-" + name, (x, 0.0, 0.0))
+        ends.pin(model, name)
     line = dict(xMin=-slack, yMin=-slack, zMin=-slack, xMax=design.length + slack, yMax=slack, zMax=slack)
     if design.layers % 2 == 0:
         assembly.Set(name="MIDLINE", edges=instance.edges.getByBoundingBox(**line))

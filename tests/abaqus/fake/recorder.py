@@ -23,6 +23,7 @@ UNTYPED = {
     ("setSweepPath", "region"),
     ("Temperature", "magnitudes"),
     ("getWarningReply", "buttons"),
+    ("ElemType", "elemCode"),
 }
 BASES = {"abaqus.Model.Model:Model": ["abaqus.Field.FieldModel:FieldModel"]}
 #: Members that every repository has.
@@ -147,8 +148,10 @@ class World(object):
             return
         if isinstance(value, Constant):
             wanted = param["literal"]
-            if wanted is not None and value.name not in wanted and not (
-                "Boolean" in kind and value.name in ("ON", "OFF")
+            if (
+                wanted is not None
+                and value.name not in wanted
+                and not ("Boolean" in kind and value.name in ("ON", "OFF"))
             ):
                 raise TypeError(text + " is not one of " + ", ".join(wanted))
             if wanted is None and kind in ("str", "float", "int"):
