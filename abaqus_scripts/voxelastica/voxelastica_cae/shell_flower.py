@@ -34,6 +34,8 @@ if TYPE_CHECKING:  # type comments only: ABAQUS has no such modules
     from typing import Any  # novm
 
     from abaqus.Assembly.Assembly import Assembly
+    from abaqus.Assembly.PartInstance import PartInstance
+    from abaqus.BasicGeometry.EdgeArray import EdgeArray
     from abaqus.Datum.Datum import Datum
     from abaqus.Model.Model import Model
     from abaqus.Part.Part import Part
@@ -173,6 +175,7 @@ def _seed(part, design, upper):
 
 
 def _edges(of, design, upper, x=None, y=None, side=None):
+    # type: (Part | PartInstance, Design, list[tuple[float, float]], float | None, float | None, float | None) -> EdgeArray
     """Edges of a part or of spoke 1: at one x (an end's), at one y (the mid-line), or beyond `side` (an outline)."""
     slack, wide = _SLACK * design.length, 2.0 * max(y for _, y in upper)
     low, high = [upper[-1][0] - slack, -wide], [upper[0][0] + slack, wide]

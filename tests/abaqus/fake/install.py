@@ -5,7 +5,7 @@ from __future__ import division
 import sys
 import types
 
-from . import geometry
+from . import geometry, gui, odb
 from .recorder import Repository, Thing, World
 
 
@@ -25,6 +25,8 @@ def install(table, replies=()):
     """
     world = World(table)
     geometry.install(world)
+    odb.install(world)
+    world.odbs = {}
     world.replies, world.messages = list(replies), []
     world.mdb = Thing(world, world.class_key("Mdb"), "mdb")
     world.mdb._values["models"] = Repository(world, "mdb.models")
@@ -41,6 +43,8 @@ def install(table, replies=()):
             if name in ("getInput", "getInputs", "getWarningReply"):
                 return world.replies.pop(0)
             if name == "openOdb":
+                if bound["path"] not in world.odbs:
+                    raise IOError("%s is no output database" % bound["path"])
                 return world.odbs[bound["path"]]
             return None
 
@@ -69,6 +73,7 @@ def install(table, replies=()):
 
         return make
 
+    gui.install(world, made["abaqusGui"])
     made["mesh"].ElemType = constructor("ElemType")
     made["odbAccess"].HistoryPoint = constructor("HistoryPoint")
     return world

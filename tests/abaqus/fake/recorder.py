@@ -127,7 +127,7 @@ class World(object):
             bound["*"] = tuple(args[len(params) :])
         known = dict((p["name"], p) for p in signature["params"])
         for key, value in kwargs.items():
-            if key not in known and not signature["any"]:
+            if key not in known and (known or not signature["any"]):
                 raise TypeError("%s.%s has no argument %s" % (where, name, key))
             if key in bound:
                 raise TypeError("%s.%s: %s is given twice" % (where, name, key))
