@@ -90,6 +90,22 @@ solvers = ["abaqus"]
 """
 
 
+COUPON = """
+[target]
+kind = "strip"
+width_mm = 12.0
+rigid_fraction = 0.5
+[strips]
+length_mm = 40.0
+thickness_mm = 2.0
+[materials]
+phases = ["FLX9070", "FLX9095"]
+[voxels]
+size_mm = 1.0
+pattern = "centred"
+"""
+
+
 def small(hub: str = "free", thickness: float = 2.0, pattern: str = "random", phases: str = "") -> str:
     """A small design as text."""
     choice = "least-contrast" if hub == "held" else "equal-ends"
@@ -111,6 +127,7 @@ def designs(program: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str
         "odd": small(thickness=3.0),
         "centred": small(pattern="centred"),
         "through": small(pattern="through-thickness"),
+        "coupon": COUPON,
     }
     for name, text in texts.items():
         made[name] = design(text, root, name)
