@@ -213,7 +213,9 @@ def test_the_script_says_what_is_wrong_and_ends_with_2(
 
 
 @pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() != 0, reason="only root can become another user")
-def test_a_folder_without_rights(table: Path, designs: dict[str, Path], tmp_path_factory: pytest.TempPathFactory) -> None:
+def test_a_folder_without_rights(
+    table: Path, designs: dict[str, Path], tmp_path_factory: pytest.TempPathFactory
+) -> None:
     """As a user who may neither read the design nor write beside it."""
     python, setpriv = shutil.which("python3", path="/usr/bin:/usr/local/bin"), shutil.which("setpriv")
     if not python or not setpriv:

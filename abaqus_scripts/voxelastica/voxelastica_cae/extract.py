@@ -73,9 +73,11 @@ def read(odb, spoke):
     nodes = _nodes(odb, "MIDLINE" + suffix)
     frame = step.frames[len(step.frames) - 1]
     line, inward = midline(nodes, _displacements(odb, frame, "MIDLINE" + suffix))
-    reactions = [_reactions(odb, step, "RP-" + end + suffix, inward) for end in ("RIM", "HUB")]
+    # The rim's motion shows which axes a spoke's history is in; its hub end does not move sideways at all.
+    rim = _reactions(odb, step, "RP-RIM" + suffix, inward)
+    reactions = [rim, _reactions(odb, step, "RP-HUB" + suffix, inward, rim["axes_in_database"])]
     if suffix and "RP-HUB" in odb.rootAssembly.nodeSets.keys():
-        reactions.append(_reactions(odb, step, "RP-HUB", (1.0, 0.0)))
+        reactions.append(_reactions(odb, step, "RP-HUB", (1.0, 0.0), "global"))
     return {"midline_mm": line, "reactions": reactions, "step": name, "time": frame.frameValue, "spoke": spoke}
 
 
@@ -142,9 +144,12 @@ def _from_first(pair):
     return math.hypot(pair[0][0], pair[0][1])
 
 
-def _reactions(odb, step, name, inward):
-    # type: (Odb, OdbStep, str, tuple[float, float]) -> dict[str, Any]
-    """Reactions at a reference point by increment, in the spoke's axes."""
+def _reactions(odb, step, name, inward, axes=""):
+    # type: (Odb, OdbStep, str, tuple[float, float], str) -> dict[str, Any]
+    """Reactions at a reference point by increment, in the axes of which 1 is `inward`.
+
+    ``axes``: those of the history, "local" or "global"; empty: as the point's motion shows.
+    """
     node = _nodes(odb, name)[0]
     outputs = None
     for key in step.historyRegions.keys():
@@ -162,7 +167,7 @@ def _reactions(odb, step, name, inward):
     columns = dict((kind, [float(v) for _, v in _pairs(outputs, kind)]) for kind in _FORCES)  # type: dict[str, list[float]]
     times = [float(t) for t, _ in _pairs(outputs, "RF1")]
     moves = dict((k, [float(v) for _, v in _pairs(outputs, k)]) for k in ("U1", "U2") if k in outputs.keys())  # type: Any
-    axes = history_axes(moves, inward)
+    axes = axes or history_axes(moves, inward)
     if axes == "global":
         for one, two in (("RF1", "RF2"), ("RM1", "RM2")):
             turned = [
