@@ -93,10 +93,24 @@ def act(world, action):
         )._plain()
     if do == "plugin":
         return plugin(world, action)
+    if do == "coarse":
+        # A swept mesh that does not heed the seeds.
+        original = world.behaviours["MeshPart", "setMeshControls"]
+
+        def control(self, result, technique=None, **given):
+            self._values["_geometry"].ignored = technique.name == "SWEEP"
+            return original(self, result, technique=technique, **given)
+
+        world.behaviours["MeshPart", "setMeshControls"] = control
+        return None
     if do == "fail":
         # The interface itself refuses in the middle of the work.
+        kind = RuntimeError
+        if action.get("by") == "abaqus":
+            from abaqus import AbaqusException as kind
+
         def refuse(*_, **__):
-            raise RuntimeError("the interface refused")
+            raise kind("the interface refused")
 
         world.behaviours[tuple(action["method"])] = refuse
         return None

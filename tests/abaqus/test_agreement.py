@@ -289,3 +289,19 @@ def test_outputs_hold_what_the_extraction_reads(record: Recorder, designs: dict[
         requests = model.run.actions[0]["after"][model.name]
         assert requests["fieldOutputRequests"] == ["VOXELASTICA-FIELD"]
         assert all(name.startswith("VOXELASTICA-") for name in requests["historyOutputRequests"])
+
+
+@pytest.mark.parametrize("method", ["setSweepPath", "generateMesh"])
+def test_a_spoke_that_is_not_swept_is_structured(record: Recorder, designs: dict[str, Path], method: str) -> None:
+    """CAE refuses the sweep path, or the swept mesh ignores the seeds."""
+    path = str(designs["held"] / "design.json")
+    if method == "setSweepPath":
+        fault = {"do": "fail", "method": ["MeshPart", method], "by": "abaqus"}
+    else:
+        fault = {"do": "coarse"}
+    run = record(fault, {"do": "build", "design": path, "options": {"kind": "shell"}})
+    assert "error" not in run.actions[1], run.actions[1]
+    assert "its mesh is structured" in run.out
+    controls = [of["technique"] for of in Model(run, "held-shell").called("setMeshControls")]
+    assert controls == ["SWEEP", "STRUCTURED"]
+    assert Model(run, "held-shell").count("deleteMesh") == (method == "generateMesh")

@@ -9,6 +9,7 @@ from __future__ import division
 
 import math
 
+from abaqus import AbaqusException
 from abaqusConstants import (
     AXIS_3,
     CARTESIAN,
@@ -20,6 +21,7 @@ from abaqusConstants import (
     ON,
     QUAD,
     STACK_3,
+    STRUCTURED,
     SWEEP,
     SYSTEM,
     THREE_D,
@@ -27,7 +29,8 @@ from abaqusConstants import (
     XZPLANE,
 )
 
-from . import ends, materials, morph
+from . import VoxelasticaError, ends, materials, morph
+from .messages import say
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:  # type comments only: ABAQUS has no such modules
@@ -84,7 +87,7 @@ def build(model, design, mesh=True):
     spoke = _spoke(model, design)
     hub = _hub(model, design)
     if mesh:
-        spoke.generateMesh()
+        _mesh(spoke, design)
         hub.generateMesh()
     _phase_sets(spoke, design, mesh)
     assembly = model.rootAssembly
@@ -167,11 +170,31 @@ def _seed(part, design, upper):
     for x in (upper[0][0], upper[-1][0]):
         part.seedEdgeByNumber(edges=_edges(part, design, upper, x=x), number=across // 2, constraint=FINER)
     part.setElementType(regions=(part.faces,), elemTypes=(materials.element_type(design.decks["shell_element"]),))
-    part.setMeshControls(regions=part.faces, elemShape=QUAD, technique=SWEEP)
     midline = _edges(part, design, upper, y=0.0)[0]
-    for face in part.faces:
-        # The stub wants a string; the face itself is what CAE records.
-        part.setSweepPath(region=face, edge=midline, sense=FORWARD)  # pyright: ignore[reportArgumentType]
+    try:
+        part.setMeshControls(regions=part.faces, elemShape=QUAD, technique=SWEEP)
+        for face in part.faces:
+            # The stub wants a string; the face itself is what CAE records.
+            part.setSweepPath(region=face, edge=midline, sense=FORWARD)  # pyright: ignore[reportArgumentType]
+    except AbaqusException as error:
+        say("Voxelastica: CAE does not sweep the spoke (%s); its mesh is structured" % error)
+        part.setMeshControls(regions=part.faces, elemShape=QUAD, technique=STRUCTURED)
+
+
+def _mesh(part, design):
+    # type: (Part, Design) -> None
+    """Meshes the spoke; where sweeping leaves the seeds unheeded, structured."""
+    along, across = design.decks["shell_elements"]
+    part.generateMesh()
+    if len(part.elements) != along * across:
+        say("Voxelastica: swept, the spoke has %d elements; its mesh is structured" % len(part.elements))
+        part.deleteMesh(regions=part.faces)  # pyright: ignore[reportArgumentType]  faces are regions
+        part.setMeshControls(regions=part.faces, elemShape=QUAD, technique=STRUCTURED)
+        part.generateMesh()
+    if len(part.elements) != along * across:
+        raise VoxelasticaError(
+            "CAE meshed %d elements where the seeds ask for %d" % (len(part.elements), along * across)
+        )
 
 
 def _edges(of, design, upper, x=None, y=None, side=None):

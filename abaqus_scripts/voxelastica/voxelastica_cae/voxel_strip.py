@@ -86,6 +86,11 @@ def build(model, design, mesh=True, find="auto"):
     part.seedPart(size=design.edge / per_edge, deviationFactor=0.1, minSizeFactor=0.1)
     if mesh:
         part.generateMesh()
+        wanted = design.voxels * per_edge**3
+        if len(part.elements) != wanted:
+            raise VoxelasticaError(
+                "CAE meshed %d elements of %d; import the mesh instead" % (len(part.elements), wanted)
+            )
     assembly = _assemble(model, part, design, mesh)
     morph.step(model, design)
     morph.rim(model, design, assembly.sets["RP-RIM"])

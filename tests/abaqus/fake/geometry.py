@@ -156,7 +156,8 @@ class Solid(object):
             for n, p in enumerate((x, y, z) for x in ticks[0] for y in ticks[1] for z in ticks[2])
         ]
 
-    def elements(self):
+    def count(self):
+        """Number of elements; one cell stands for all."""
         self._build()
         each = 0
         for cell in list(self._cells.values())[:1]:
@@ -206,6 +207,9 @@ class Shell(object):
             return self._elements()
         return sorted({"edges": self.curves, "faces": self.faces}.get(kind, []), key=lambda e: e.index)
 
+    def count(self):
+        return len(self._elements())
+
     def inside(self, kind, box):
         return [entity for entity in self.all(kind) if entity.inside(box)]
 
@@ -213,6 +217,8 @@ class Shell(object):
         """Rows of elements from the seeds, evenly spaced along x; none before the mesh."""
         if not self.meshed:
             return []
+        if getattr(self, "ignored", False):
+            return [Entity("element", (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))]
         along = [e.number for e in self.curves if e.high[0] - e.low[0] > 1e-9]
         across = [e.number for e in self.curves if e.high[0] - e.low[0] <= 1e-9]
         if (
@@ -244,6 +250,8 @@ def _array(owner, kind, geometry, offset=(0.0, 0.0, 0.0), turned=None):
         return geometry().all(kind)
 
     array = Sequence(world, CLASSES[kind], "%s.%s" % (owner._path, kind), source, whole=True)
+    if kind == "elements":
+        array.__dict__["_count"] = lambda: geometry().count()
     array.__dict__.update(_geometry=geometry, _offset=offset, _kind=kind, _turned=turned)
     return array
 
@@ -374,6 +382,14 @@ def install(world):
             raise ValueError("no edge to seed")
         for edge in edges:
             edge.number = number
+
+    @on("MeshPart", "setMeshControls")
+    def control(self, result, **_):
+        return result
+
+    @on("MeshPart", "deleteMesh")
+    def delete(self, result, **_):
+        self._values["_geometry"].meshed = False
 
     @on("MeshPart", "generateMesh")
     def generate(self, result, **_):

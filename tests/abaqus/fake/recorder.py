@@ -305,7 +305,8 @@ class Sequence(Thing):
         return Sequence(self._world, self._class_name, self._path, sorted(objects, key=lambda item: item.index))
 
     def __len__(self):
-        return len(self._objects())
+        counted = self.__dict__.get("_count")
+        return counted() if counted else len(self._objects())
 
     def __iter__(self):
         return iter(self._objects())
