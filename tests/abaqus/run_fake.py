@@ -105,12 +105,8 @@ def act(world, action):
         return None
     if do == "fail":
         # The interface itself refuses in the middle of the work.
-        kind = RuntimeError
-        if action.get("by") == "abaqus":
-            from abaqus import AbaqusException as kind
-
         def refuse(*_, **__):
-            raise kind("the interface refused")
+            raise RuntimeError("the interface refused")
 
         world.behaviours[tuple(action["method"])] = refuse
         return None

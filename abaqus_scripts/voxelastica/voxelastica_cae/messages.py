@@ -20,3 +20,13 @@ def say(text):
 def refuse(error):
     """Says what is wrong with the user's input."""
     say("Voxelastica: %s" % error)
+
+
+def progress(message, things, done, total):
+    # type: (str, str, int, int) -> None
+    """Moves CAE's progress bar: `done` of `total` things. Work does not depend on it."""
+    try:
+        from abaqus import milestone  # pyright: ignore[reportAttributeAccessIssue]  not in the stub of this module
+    except ImportError:
+        return
+    milestone(message, things, done, total)

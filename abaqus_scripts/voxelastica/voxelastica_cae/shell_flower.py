@@ -9,7 +9,6 @@ from __future__ import division
 
 import math
 
-from abaqus import AbaqusException
 from abaqusConstants import (
     AXIS_3,
     CARTESIAN,
@@ -176,7 +175,9 @@ def _seed(part, design, upper):
         for face in part.faces:
             # The stub wants a string; the face itself is what CAE records.
             part.setSweepPath(region=face, edge=midline, sense=FORWARD)  # pyright: ignore[reportArgumentType]
-    except AbaqusException as error:
+    except (AttributeError, TypeError):  # a mistake of this script, not CAE's refusal
+        raise
+    except Exception as error:
         say("Voxelastica: CAE does not sweep the spoke (%s); its mesh is structured" % error)
         part.setMeshControls(regions=part.faces, elemShape=QUAD, technique=STRUCTURED)
 

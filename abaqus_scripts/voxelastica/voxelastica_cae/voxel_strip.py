@@ -6,11 +6,10 @@ its instance lowered by half the thickness.
 
 from __future__ import division
 
-from abaqus import milestone  # pyright: ignore[reportAttributeAccessIssue]  not in the stub
 from abaqusConstants import CARTESIAN, DEFORMABLE_BODY, HEX, ON, STRUCTURED, THREE_D, XYPLANE, XZPLANE, YZPLANE
 
 from . import VoxelasticaError, cells, ends, materials, morph
-from .messages import say
+from .messages import progress, say
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:  # type comments only: ABAQUS has no such modules
@@ -121,7 +120,7 @@ def _partition(part, design):
     cuts += [(XZPLANE, j * edge) for j in range(1 - most, most)]
     for done, (plane, offset) in enumerate(cuts):
         if done % 20 == 0:
-            milestone("Voxelastica: cutting", "planes", done, len(cuts))
+            progress("Voxelastica: cutting", "planes", done, len(cuts))
         datum = part.DatumPlaneByPrincipalPlane(principalPlane=plane, offset=offset)
         part.PartitionCellByDatumPlane(datumPlane=part.datums[datum.id], cells=part.cells)
     if len(part.cells) != design.voxels:
@@ -192,7 +191,7 @@ def _by_runs(part, design, boxes):
     parts = [[] for _ in design.phases]
     for done, (phase, slices, layers, columns) in enumerate(boxes):
         if done % 100 == 0:
-            milestone("Voxelastica: finding voxels", "runs", done, len(boxes))
+            progress("Voxelastica: finding voxels", "runs", done, len(boxes))
         parts[phase].append(_box(part, design, slices, layers, columns))
     found = {}
     for phase, sequences in zip(design.phases, parts):

@@ -58,7 +58,6 @@ def install(table, replies=()):
     for name in world.table["modules"]["abaqus"]:
         setattr(made["abaqus"], str(name), function("abaqus", name))
     made["abaqus"].mdb = world.mdb
-    made["abaqus"].AbaqusException = type("AbaqusException", (Exception,), {})
     for name in world.table["modules"]["odbAccess"]:
         setattr(made["odbAccess"], str(name), function("odbAccess", name))
 
