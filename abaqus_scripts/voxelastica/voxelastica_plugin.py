@@ -9,22 +9,68 @@ import os
 
 from abaqusConstants import ALL
 from abaqusGui import (
+    AFXSELECTFILE_ANY,
+    FXMAPFUNC,
+    AFXBoolKeyword,
     AFXComboBox,
     AFXDataDialog,
+    AFXFileSelectorDialog,
     AFXForm,
     AFXGuiCommand,
     AFXIntKeyword,
+    AFXIntTarget,
+    AFXMode,
     AFXStringKeyword,
     AFXTextField,
     AFXVerticalAligner,
+    FXButton,
+    FXHorizontalFrame,
+    FXObject,
     getAFXApp,
 )
+from abaqusGui import SEL_COMMAND  # pyright: ignore[reportAttributeAccessIssue]  the stubs forgot it
 
 _FOLDER = os.path.dirname(os.path.abspath(inspect.getfile(inspect.currentframe())))  # type: ignore[arg-type]
 _INIT = "import sys; sys.path.insert(0, %r); import voxelastica_cae.dialogs" % _FOLDER
 _KERNEL = "voxelastica_cae.dialogs"
 _VERSION, _AUTHOR = "0.1.0", "Voxelastica"
 _KINDS = ("auto", "geometry", "mesh", "shell")
+
+
+class Chooser(FXObject):
+    """Lets the user pick a file for a form's keyword."""
+
+    def __init__(self, keyword, patterns):
+        self.keyword, self.patterns = keyword, patterns
+        self.pattern = AFXIntTarget(0)
+        self.read_only = AFXBoolKeyword(None, "readOnly", AFXBoolKeyword.TRUE_FALSE)  # pyright: ignore[reportArgumentType]
+        FXObject.__init__(self)
+        FXMAPFUNC(self, SEL_COMMAND, AFXMode.ID_ACTIVATE, Chooser.choose)
+
+    def choose(self, sender, selector, data):
+        """Opens CAE's file dialog; what is picked goes into the keyword."""
+        window = getAFXApp().getAFXMainWindow()
+        dialog = AFXFileSelectorDialog(
+            window,
+            "Voxelastica: choose a file",
+            self.keyword,
+            self.read_only,
+            AFXSELECTFILE_ANY,
+            self.patterns,
+            self.pattern,
+        )
+        dialog.create()
+        dialog.showModal()
+        return 1
+
+
+def file_field(fields, label, keyword, patterns):
+    """A text field for a path with a button that opens a file dialog; returns what must outlive the dialog."""
+    line = FXHorizontalFrame(fields)
+    AFXTextField(line, 50, label, keyword)
+    chooser = Chooser(keyword, patterns)
+    FXButton(line, "Choose...", None, chooser, AFXMode.ID_ACTIVATE)
+    return chooser
 
 
 class BuildForm(AFXForm):
@@ -51,7 +97,7 @@ class BuildDialog(AFXDataDialog):
         window = getAFXApp().getAFXMainWindow()
         AFXDataDialog.__init__(self, form, window, "Voxelastica: build a model", self.OK | self.CANCEL)
         fields = AFXVerticalAligner(self)
-        AFXTextField(fields, 60, "Design (design.json):", form.design)
+        self.chooser = file_field(fields, "Design (design.json):", form.design, "Designs (*.json)\nAll files (*)")
         kinds = AFXComboBox(fields, 12, len(_KINDS), "Kind:", form.kind)
         for kind in _KINDS:
             kinds.appendItem(kind)
@@ -83,8 +129,10 @@ class ExtractDialog(AFXDataDialog):
         window = getAFXApp().getAFXMainWindow()
         AFXDataDialog.__init__(self, form, window, "Voxelastica: extract results", self.OK | self.CANCEL)
         fields = AFXVerticalAligner(self)
-        AFXTextField(fields, 60, "Output database:", form.odb)
-        AFXTextField(fields, 60, "Design (may be empty):", form.design)
+        self.choosers = (
+            file_field(fields, "Output database:", form.odb, "Output databases (*.odb)"),
+            file_field(fields, "Design (may be empty):", form.design, "Designs (*.json)\nAll files (*)"),
+        )
         AFXTextField(fields, 60, "Folder (empty: the database's):", form.folder)
         AFXTextField(fields, 8, "Spoke:", form.spoke)
 

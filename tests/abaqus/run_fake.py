@@ -129,8 +129,10 @@ def plugin(world, action):
     scope = {"__name__": "voxelastica_plugin", "__file__": path}
     exec(code, scope)
     for name in ("BuildForm", "ExtractForm"):
-        scope[name](scope["toolset"]).getFirstDialog()
-    return [call for call in world.calls[before:] if "register" in call[0] or "Keyword" in call[0]]
+        dialog = scope[name](scope["toolset"]).getFirstDialog()
+        for chooser in dialog.__dict__.get("choosers") or [dialog.chooser]:
+            chooser.choose(None, 0, None)
+    return len(world.calls) - before
 
 
 def main():

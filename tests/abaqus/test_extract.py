@@ -205,8 +205,11 @@ def test_the_plug_in_registers_and_sends_what_the_kernel_takes(record: Recorder)
             command = of["method"]
             assert of["objectName"] == "voxelastica_cae.dialogs"
             sent[command] = []
-        elif "Keyword.__init__" in path:
+        elif "Keyword.__init__" in path and of["command"]:
             sent[command].append(of["name"])
     assert sent == {name: parameters[name] for name in ("build_model", "extract_results")}
+    # A file is picked for the design, the database and its design.
+    picked = [of["pathNameTgt"] for path, of in calls if path == "AFXFileSelectorDialog.__init__"]
+    assert len(picked) == 3 and sum(path == "abaqusGui.FXMAPFUNC" for path, _ in calls) >= 3
     assert {"ask_build()", "ask_extract()"} == {of["functionName"] for of in buttons[2:]}
     assert {"ask_build", "ask_extract"} <= set(parameters)

@@ -124,6 +124,13 @@ def test_both_pythons_record_the_same(
     assert two.out == three.out
 
 
+def test_both_pythons_load_the_plug_in_alike(record: Recorder, record27: Recorder) -> None:
+    action = {"do": "plugin", "script": str(SCRIPTS / "voxelastica_plugin.py")}
+    three, two = record(action), record27(action)
+    assert "error" not in three.actions[0] and len(three.calls) > 60
+    assert two.calls == three.calls
+
+
 def test_scripts_stand_on_the_standard_library_and_abaqus_alone() -> None:
     """No import of anything else, no path, no unicode."""
     allowed = {"abaqus", "abaqusConstants", "abaqusGui", "mesh", "odbAccess", "voxelastica_cae", "typing"}

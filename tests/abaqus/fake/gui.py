@@ -5,6 +5,10 @@ from __future__ import division
 import zlib
 
 
+#: What ABAQUS's own reference has and the stubs have not.
+FORGOTTEN = {"SEL_COMMAND": 1}
+
+
 class Widget(object):
     """Base of all: what the class does not have cannot be read or called."""
 
@@ -15,9 +19,7 @@ class Widget(object):
         found = world.member(key, name)
         if found is None:
             raise AttributeError("%s has no %s" % (type(self).__name__, name))
-        kind, what = found
-        if kind == "attribute":
-            return zlib.crc32(name.encode("ascii")) & 0x7FFFFFFF
+        what = found[1]
 
         def call(*args, **kwargs):
             bound = world.bind(type(self).__name__, name, what, args, kwargs)
@@ -43,7 +45,11 @@ def install(world, module):
                 bound = world.bind(name, "__init__", found[1], args, kwargs)
                 world.record(name + ".__init__", bound)
 
-        made = type(str(name), (Widget,), {"__init__": init, "_world": world, "_key": key})
+        members = {"__init__": init, "_world": world, "_key": key}
+        for of in world.lineage(key):
+            for number in world.table["classes"][of]["attributes"]:
+                members.setdefault(str(number), zlib.crc32(number.encode("ascii")) & 0x7FFFFFFF)
+        made = type(str(name), (Widget,), members)
         world.gui[key] = made
         return made
 
@@ -59,5 +65,10 @@ def install(world, module):
     for name, key in sorted(world.table["gui"].items()):
         if key:
             setattr(module, str(name), derive(name, key))
+    for name, key in FORGOTTEN.items():
+        setattr(module, name, key)
+    for name, key in world.table["gui"].items():
+        if key is None and name not in world.table["modules"]["abaqusGui"]:
+            setattr(module, str(name), zlib.crc32(name.encode("ascii")) & 0x7FFFFFFF)
     for name, signatures in world.table["modules"]["abaqusGui"].items():
         setattr(module, str(name), function(name, signatures))

@@ -104,6 +104,8 @@ class World(object):
             return [self.plain(item) for item in value]
         if isinstance(value, float):
             return repr(value)
+        if callable(value):
+            return "function " + value.__name__
         return value
 
     # Signatures
