@@ -11,14 +11,14 @@
 mod conduction;
 mod graded_shell;
 mod graded_solid;
-mod keywords;
+pub(crate) mod keywords;
 mod layout;
 mod nastran;
 pub(crate) mod number;
-mod schedule;
+pub(crate) mod schedule;
 mod shell;
 mod sink;
-mod solid;
+pub(crate) mod solid;
 pub mod unit_cell;
 mod voxel_shell;
 mod voxel_solid;

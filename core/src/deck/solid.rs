@@ -41,10 +41,9 @@ impl<'a> SolidModel<'a> {
         let input = design.input();
         let layout = Layout::new(solver, &input.decks);
         let length = input.strips.length_mm;
-        let block = if matches!(design.guide(), Some(Guide::Clamped { .. })) {
-            block.bowed(BOW * input.strips.thickness_mm)
-        } else {
-            block
+        let block = match initial_bow(design) {
+            0.0 => block,
+            bow => block.bowed(bow),
         };
         // In an assembly, reference nodes are numbered on their own.
         let first = if layout.has_parts() { 1 } else { block.nodes() + 1 };
@@ -174,27 +173,23 @@ impl<'a> SolidModel<'a> {
         self.layout.prefix(INSTANCE)
     }
 
-    /// Increments; a strip that is to buckle passes its buckling load, where `(pi^2/3) (t/L)^2` of its length is gone, in
-    /// small ones.
-    fn increments(&self) -> Increments {
-        let Some(Guide::Clamped { length_mm, shortening }) = self.design.guide() else { return Increments::MORPH };
-        let slenderness = self.design.input().strips.thickness_mm / length_mm;
-        let buckled = slenderness * std::f64::consts::PI / (3.0 * shortening).sqrt();
-        let first = (0.1 * buckled).clamp(1e-3, Increments::MORPH.first);
-        Increments { first, ..Increments::MORPH }
-    }
-
     pub(super) fn amplitudes(&self, sink: &mut Sink<'_>) -> Result<(), DeckError> {
         amplitudes::amplitudes(sink, self.schedule.motions())
     }
 
     /// The step from the flat strip to its final shape.
     pub(super) fn step(&self, sink: &mut Sink<'_>) -> Result<(), DeckError> {
-        step::open(sink, self.layout, "MORPH", self.increments())?;
+        step::open(sink, self.layout, "MORPH", Increments::of(self.design))?;
         boundary::ends(sink, self.layout, &self.schedule, [&self.rim, &self.hub])?;
         output::requests(sink, self.layout, self.nodes(), &["MIDLINE"], &[&self.rim, &self.hub])?;
         step::close(sink)
     }
+}
+
+/// Rise of the flat strip's middle, mm: none but where it is to buckle.
+pub(crate) fn initial_bow(design: &Design) -> f64 {
+    let buckles = matches!(design.guide(), Some(Guide::Clamped { .. }));
+    if buckles { BOW * design.input().strips.thickness_mm } else { 0.0 }
 }
 
 /// The element type: CalculiX bends well with incompatible modes only, and so does ABAQUS where a single point through

@@ -2,8 +2,9 @@
 
 use serde_json::{Value, json};
 
-use super::{Provenance, Summary};
+use super::{Provenance, Summary, model_json};
 use crate::SCHEMA;
+use crate::deck::keywords::materials::material_name;
 use crate::design::Design;
 use crate::error::Error;
 use crate::modulus_field::ModulusField;
@@ -32,6 +33,7 @@ pub fn document(
         .map(|phase| {
             let mut value = serde_json::to_value(phase).unwrap_or_default();
             value["label"] = json!(phase.label());
+            value["material"] = json!(material_name(phase));
             value
         })
         .collect();
@@ -71,6 +73,9 @@ pub fn document(
             "stiffness_nmm2": column(|s| s.section.stiffness),
             "neutral_offset_mm": column(|s| s.section.neutral_offset),
         },
+        "voxels": model_json::voxels(design),
+        "graded_material": model_json::graded_material(design),
+        "morph_step": model_json::morph_step(design),
         "morph_path": morph_path(design),
         "predicted_midline_mm": predicted_midline(design),
         "warnings": design.warnings_for_files(),

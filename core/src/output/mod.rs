@@ -3,6 +3,7 @@
 pub mod design_json;
 pub mod folder;
 pub mod json;
+mod model_json;
 pub mod provenance;
 pub mod summary;
 pub mod tables;

@@ -1,0 +1,1 @@
+"""The recording stand-in for ABAQUS; see recorder.py."""
