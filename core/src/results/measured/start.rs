@@ -1,0 +1,112 @@
+//! Where the search for a placement starts: which way a scanned dome's axis points.
+//!
+//! Directions all over the sphere are tried on a few hundred points; the best are improved on more of them.
+
+use std::f64::consts::{PI, TAU};
+
+use nalgebra::{Matrix3, Rotation3, Vector3};
+
+use super::dome::Dome;
+use super::placement::{FACETED, Limits, Placement, ROUND, clipped_cost, refine};
+use crate::progress::Cancelled;
+
+/// Directions all over the sphere.
+const DIRECTIONS: usize = 60;
+const COARSE_POINTS: usize = 250;
+const COARSE_ITERATIONS: usize = 12;
+const MIDDLE_POINTS: usize = 2000;
+/// Starts that are improved.
+const BEST: usize = 5;
+/// Turns of a faceted dome about its axis that are tried within one facet.
+const PHASES: usize = 8;
+/// Scale of the biweight while the placement is only guessed, and largest distance that tells placements apart, as
+/// shares of the length.
+const COARSE: f64 = 0.2;
+const CLIP: f64 = 0.03;
+
+/// The best placement of a scan on a surface of revolution.
+pub(super) fn round(dome: &Dome, points: &[Vector3<f64>], length: f64, cancelled: Cancelled<'_>) -> Option<Placement> {
+    let few = spread_out(points, COARSE_POINTS);
+    let some = spread_out(points, MIDDLE_POINTS);
+    let coarse = Limits { iterations: COARSE_ITERATIONS, scale: Some(COARSE * length) };
+    let mut starts = Vec::new();
+    for direction in directions(&some) {
+        let fit = refine(dome, &few, along(dome, &some, &direction), ROUND, coarse, cancelled)?;
+        starts.push((clipped_cost(dome, &few, &fit.placement, COARSE * length), fit.placement));
+    }
+    starts.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut best: Option<(f64, Placement)> = None;
+    for (_, start) in starts.into_iter().take(BEST) {
+        let fit = refine(dome, &some, start, ROUND, Limits::NEAR, cancelled)?;
+        let cost = clipped_cost(dome, &some, &fit.placement, CLIP * length);
+        if best.as_ref().is_none_or(|b| cost < b.0) {
+            best = Some((cost, fit.placement));
+        }
+    }
+    best.map(|b| b.1)
+}
+
+/// The best placement of a scan on a dome of spokes, from the best one on its surface of revolution.
+pub(super) fn faceted(
+    dome: &Dome,
+    points: &[Vector3<f64>],
+    round: &Placement,
+    length: f64,
+    cancelled: Cancelled<'_>,
+) -> Option<Placement> {
+    let count = dome.spokes.unwrap_or(1).max(1);
+    let some = spread_out(points, MIDDLE_POINTS);
+    let mut best: Option<(f64, Placement)> = None;
+    for phase in 0..PHASES {
+        let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), TAU * phase as f64 / (PHASES * count) as f64);
+        let start = Placement { rotation: turn * round.rotation, shift: turn * round.shift };
+        let fit = refine(dome, &some, start, FACETED, Limits::NEAR, cancelled)?;
+        let cost = clipped_cost(dome, &some, &fit.placement, CLIP * length);
+        if best.as_ref().is_none_or(|b| cost < b.0) {
+            best = Some((cost, fit.placement));
+        }
+    }
+    best.map(|b| b.1)
+}
+
+/// At most `most` of the points, from all over the list whatever its order.
+pub(super) fn spread_out(points: &[Vector3<f64>], most: usize) -> Vec<Vector3<f64>> {
+    if points.len() <= most {
+        return points.to_vec();
+    }
+    // Multiples of the golden section fall evenly between 0 and 1 and into step with no raster.
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    (1..=most).map(|i| points[((i as f64 * golden).fract() * points.len() as f64) as usize % points.len()]).collect()
+}
+
+/// Principal axes of the points, both ways, and directions all over the sphere.
+fn directions(points: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
+    let centre = points.iter().sum::<Vector3<f64>>() / points.len().max(1) as f64;
+    let moments: Matrix3<f64> = points.iter().map(|p| (p - centre) * (p - centre).transpose()).sum();
+    let axes = moments.symmetric_eigen().eigenvectors;
+    let mut directions: Vec<Vector3<f64>> =
+        (0..3).flat_map(|k| [1.0, -1.0].map(|sign| sign * axes.column(k))).collect();
+    let golden = PI * (3.0 - 5.0_f64.sqrt());
+    directions.extend((0..DIRECTIONS).map(|i| {
+        let z = 1.0 - (2 * i + 1) as f64 / DIRECTIONS as f64;
+        let (sin, cos) = (golden * i as f64).sin_cos();
+        let r = (1.0 - z * z).sqrt();
+        Vector3::new(r * cos, r * sin, z)
+    }));
+    directions
+}
+
+/// The placement that takes a direction for the axis and the middle of the points for that of the dome.
+fn along(dome: &Dome, points: &[Vector3<f64>], direction: &Vector3<f64>) -> Placement {
+    let upside_down = || Rotation3::from_axis_angle(&Vector3::x_axis(), PI);
+    let rotation = Rotation3::rotation_between(direction, &Vector3::z()).unwrap_or_else(upside_down);
+    let turned: Vec<Vector3<f64>> = points.iter().map(|p| rotation * p).collect();
+    let middle = |k: usize| {
+        let mut values: Vec<f64> = turned.iter().map(|p| p[k]).collect();
+        values.sort_by(f64::total_cmp);
+        let cut = values.len() / 50;
+        values.get(cut).zip(values.get(values.len() - 1 - cut)).map_or(0.0, |(a, b)| 0.5 * (a + b))
+    };
+    let [low, high] = dome.heights();
+    Placement { rotation, shift: Vector3::new(-middle(0), -middle(1), 0.5 * (low + high) - middle(2)) }
+}
