@@ -234,14 +234,20 @@ def test_a_strip_has_a_midline_but_no_axis(program: Path, tmp_path: Path) -> Non
         ("", (), "no rows"),
         ("s_mm,x_mm,z_mm\n0,0,0\n1,oops,0\n2,2,0\n", (), "bad.csv:3: x_mm = oops"),
         ("s_mm,x_mm,z_mm\n0,0,0\n2,2,0\n1,1,0\n", (), "bad.csv:4: s_mm = 1: this arc length does not follow"),
-        ("s_mm,x_mm,z_mm\n0,0,0\n50,40,0\n150,90,0\n", (), "bad.csv:4: s_mm = 150: this arc length is not on the strip"),
+        (
+            "s_mm,x_mm,z_mm\n0,0,0\n50,40,0\n150,90,0\n",
+            (),
+            "bad.csv:4: s_mm = 150: this arc length is not on the strip",
+        ),
         ("s_mm,x_mm,z_mm\n0,0,0\n1,1,0\n2,2,0\n", ("--face", "outer"), "no faces"),
         ("rho,z\n70,0\n69,10\n65,20\n", ("--placement", "rim"), "only a mid-line"),
         ("rho,z\n700,0\n690,10\n650,20\n", (), "only 0 of 3 points lie on the dome"),
         ("time,force\n0,1\n", (), "the columns are named time,force"),
     ],
 )
-def test_wrong_input_names_the_place(dome: Path, tmp_path: Path, text: str, options: tuple[str, ...], words: str) -> None:
+def test_wrong_input_names_the_place(
+    dome: Path, tmp_path: Path, text: str, options: tuple[str, ...], words: str
+) -> None:
     file = tmp_path / "bad.csv"
     file.write_text(text, encoding="utf-8")
     before = (dome / "comparison.json").read_bytes() if (dome / "comparison.json").exists() else None
