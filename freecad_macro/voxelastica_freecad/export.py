@@ -32,22 +32,16 @@ def require_writable(folder: str) -> Path:
 
 
 def _whole(path: Path, write: Callable[[str], object]) -> Path:
-    """Writes beside the final name and renames."""
-    handle, temporary = tempfile.mkstemp(suffix=path.suffix, prefix=".", dir=path.parent)
-    os.close(handle)
+    """Writes into a folder beside the final name and renames. (FreeCAD keeps a copy of a file that it overwrites.)"""
     try:
-        write(temporary)
-        if not os.path.getsize(temporary):
-            raise MacroError(f"{path}: FreeCAD wrote nothing", 5)
-        mask = os.umask(0)
-        os.umask(mask)
-        os.chmod(temporary, 0o666 & ~mask)
-        os.replace(temporary, path)
+        with tempfile.TemporaryDirectory(prefix=".", dir=path.parent) as folder:
+            temporary = os.path.join(folder, path.name)
+            write(temporary)
+            if not os.path.isfile(temporary) or not os.path.getsize(temporary):
+                raise MacroError(f"{path}: FreeCAD wrote nothing", 5)
+            os.replace(temporary, path)
     except OSError as error:
         raise MacroError(f"{path}: this cannot be written: {error.strerror}", 5) from None
-    finally:
-        if os.path.exists(temporary):
-            os.unlink(temporary)
     return path
 
 

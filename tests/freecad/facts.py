@@ -49,7 +49,7 @@ def facts() -> dict:
     if analysis := built.parts.get("analysis"):
         mesh = analysis["mesh"].FemMesh
         materials = solve.materials(analysis["analysis"])
-        found["mesh"] = [mesh.NodeCount, mesh.HexaCount, abs(float(mesh.Volume.Value))]
+        found["mesh"] = [mesh.NodeCount, mesh.HexaCount]
         found["element_type"] = analysis["mesh"].ElementType
         found["materials"] = [[m.name, m.modulus_mpa, m.poisson, m.density_kg_m3, len(m.elements)] for m in materials]
         found["elements"] = sorted(number for m in materials for number in m.elements)
@@ -86,20 +86,15 @@ def own_writer(analysis: dict) -> list:
 
 
 def reimported(file) -> list:
-    import FreeCAD as App
-    import Import
+    """Solids, their volume, the area, and the names in the file. (Import.insert crashes without a window in 0.20.2, on any file of two
+    boxes.)"""
+    import re
 
-    document = App.newDocument("again")
-    Import.insert(str(file), document.Name)
-    shapes = [item.Shape for item in document.Objects if item.isDerivedFrom("Part::Feature")]
-    found = [
-        sum(len(s.Solids) for s in shapes),
-        sum(v.Volume for s in shapes for v in s.Solids),
-        sum(s.Area for s in shapes),
-        sorted(item.Label for item in document.Objects),
-    ]
-    App.closeDocument(document.Name)
-    return found
+    import Part
+
+    shape = Part.read(str(file))
+    names = re.findall(r"PRODUCT\('([^']*)'", file.read_text(encoding="utf-8"))
+    return [len(shape.Solids), sum(solid.Volume for solid in shape.Solids), shape.Area, sorted(set(names))]
 
 
 def reopened(file) -> list:

@@ -6,6 +6,7 @@ import re
 import shutil
 from pathlib import Path
 
+import numpy as np
 import pytest
 from conftest import EXAMPLES, design, read_json, run
 
@@ -32,6 +33,26 @@ pattern = "centred"
 
 def macro(host: Host, **variables: object) -> object:
     return host.run(MACRO / "Voxelastica.FCMacro", **variables)
+
+
+def hexahedra(text: str) -> list[float]:
+    """Volumes of the hexahedra of a deck, from the Jacobian at their centres."""
+    nodes: dict[int, np.ndarray] = {}
+    elements, block = [], ""
+    for line in text.splitlines():
+        if line.startswith("*"):
+            block = "" if line.startswith("**") else line.lower().replace(" ", "")
+        elif not line.strip():
+            continue
+        elif block.startswith("*node") and "nset" in block:
+            number, *place = line.split(",")
+            nodes[int(number)] = np.array([float(value) for value in place])
+        elif block.startswith("*element") and "c3d8" in block:
+            elements.append([int(cell) for cell in line.split(",") if cell.strip()][1:])
+    signs = np.array(
+        [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]]
+    )
+    return [8 * np.linalg.det(signs.T @ np.array([nodes[n] for n in corners]) / 8) for corners in elements]
 
 
 @pytest.fixture(scope="session")
@@ -73,7 +94,8 @@ def test_the_papers_hemisphere_as_cad(host: Host, hemisphere: dict, tmp_path: Pa
     for (label, voxels, volume, closed, extent), (name, count) in zip(found["phases"], counts.items(), strict=True):
         assert label == f"Phase_{name}" and voxels == count and closed
         assert volume == pytest.approx(0.125 * count, rel=1e-5)
-        assert extent == pytest.approx([10, 110], abs=0.01)
+        # Within one slice: none need hold both phases.
+        assert extent == pytest.approx([10, 110], abs=0.51)
     # Files.
     flat, morphed = found["step"]["hemisphere_flat.step"], found["step"]["hemisphere_morphed.step"]
     assert flat[0] == 9 and flat[1] == pytest.approx(sum(row[4] for row in found["solids"]), rel=1e-6)
@@ -84,11 +106,11 @@ def test_the_papers_hemisphere_as_cad(host: Host, hemisphere: dict, tmp_path: Pa
     assert (tmp_path / "hemisphere_flat.stl").stat().st_size > 10_000
     assert not [path for path in tmp_path.iterdir() if path.name.startswith(".")]
     # The analysis: every element has one material, within the phases, and the mesh has the strip's volume.
-    nodes, elements, volume = found["mesh"]
-    assert (nodes, elements) == (1701, 960) and volume == pytest.approx(volumes["spoke_smooth"], rel=1e-3)
+    assert found["mesh"] == [1701, 960]
     assert found["element_type"] == "C3D8I"
     assert found["elements"] == list(range(1, 961))
-    assert found["bodies"][0] == len(found["materials"]) and found["bodies"][1] == pytest.approx(volume, rel=1e-6)
+    assert found["bodies"][0] == len(found["materials"])
+    assert found["bodies"][1] == pytest.approx(volumes["spoke_smooth"], rel=1e-3)
     moduli = [row[1] for row in found["materials"]]
     assert 12.6 / 2.3158 - 0.1 < min(moduli) and max(moduli) <= 12.6
     assert len(moduli) > 12 and all(row[2] == pytest.approx(0.3) for row in found["materials"])
@@ -100,6 +122,9 @@ def test_the_papers_hemisphere_as_cad(host: Host, hemisphere: dict, tmp_path: Pa
     assert problems == ""
     text = Path(own).read_text(encoding="utf-8")
     assert len(re.findall(r"^\*SOLID SECTION", text, re.M)) == len(moduli)
+    # Its hexahedra are not inside out, and fill the bodies.
+    sizes = hexahedra(text)
+    assert len(sizes) == 960 and min(sizes) > 0 and sum(sizes) == pytest.approx(found["bodies"][1], rel=1e-3)
 
 
 @pytest.mark.parametrize("bands", [12, 0])
