@@ -104,7 +104,7 @@ def _stepped(design: Any, thickness: float) -> list[Any]:
     """Solids along the stepped outline of the voxels, one a run of slices of equal width."""
     voxels = design.voxels
     edge, bodies, at = voxels.size_mm, [], 0
-    for half, run in groupby(list(voxels.half_widths)):
+    for half, run in groupby(voxels.half_widths.tolist()):
         length = len(list(run))
         stations = [(edge * at, edge * half), (edge * (at + length), edge * half)]
         bodies.append(_body(stations, thickness))
@@ -225,10 +225,10 @@ def _phases(document: Any, analysis: Any, design: Any, deck: Deck) -> list[Any]:
     """One material a phase, on the deck's own sets."""
     import json
 
-    made = []
+    made, sections = [], deck.sections()
     for phase in json.loads(design.to_json())["phases"]:
         name = f"PHASE-{phase['label']}"
-        if not any(b.parameters.get("ELSET") == name for b in deck.blocks if b.keyword == "ELSET"):
+        if name not in sections:
             continue
         row = {"name": name, "set": name, "modulus": phase["modulus_mpa"], "elements": [], "solids": []}
         density = phase.get("density_kg_m3") or 0.0

@@ -10,7 +10,7 @@ from pathlib import Path
 from .settings import MacroError
 
 #: Keywords that say what the elements are made of.
-_MATERIAL = ("SOLID SECTION", "MATERIAL", "ELASTIC", "DENSITY")
+_MATERIAL = ("SOLID SECTION", "MATERIAL", "ELASTIC", "HYPERELASTIC", "DENSITY")
 
 
 @dataclass
@@ -94,17 +94,14 @@ class Deck:
 
     def node_set(self, name: str) -> list[int]:
         """Nodes of a set, in its order."""
-        return self._set("NSET", name)
-
-    def element_set(self, name: str) -> list[int]:
-        """Elements of a set."""
-        return self._set("ELSET", name)
-
-    def _set(self, keyword: str, name: str) -> list[int]:
-        for block in self._all(keyword):
-            if block.parameters.get(keyword) == name:
+        for block in self._all("NSET"):
+            if block.parameters.get("NSET") == name:
                 return block.ids()
-        raise MacroError(f"{self.name}: there is no {keyword} {name}", 1)
+        raise MacroError(f"{self.name}: there is no node set {name}", 1)
+
+    def sections(self) -> list[str]:
+        """Element sets that have a material."""
+        return [block.parameters["ELSET"] for block in self._all("SOLID SECTION")]
 
     def field(self) -> dict[int, float]:
         """The nodal field that carries the modulus, MPa; empty where every phase has its own material."""
@@ -130,9 +127,17 @@ class Deck:
         share = 0.0 if to == at else min(max((modulus_mpa - at) / (to - at), 0.0), 1.0)
         return 1e12 * (low + share * (high - low))
 
+    def is_neo_hooke(self) -> bool:
+        """Whether strains are so large that the deck's law is neo-Hooke's instead of Hooke's."""
+        return any(True for _ in self._all("HYPERELASTIC"))
+
     def poisson(self) -> float:
         """Poisson's ratio of the first material."""
-        return float(next(next(self._all("ELASTIC")).data())[1])
+        row = [
+            float(cell) for cell in next(next(self._all("HYPERELASTIC" if self.is_neo_hooke() else "ELASTIC")).data())
+        ]
+        # Of neo-Hooke's law the first constant is E / (4 (1 + nu)), the field is E.
+        return row[2] / (4.0 * row[0]) - 1.0 if self.is_neo_hooke() else row[1]
 
     def with_materials(self, materials: list[Material]) -> str:
         """The deck's text with these materials in place of its own, and without the field that carried the modulus."""
@@ -144,11 +149,11 @@ class Deck:
                 text += block.lines
             elif not written:
                 written = True
-                text += _written(materials)
+                text += _written(materials, self.is_neo_hooke())
         return "\n".join(text) + "\n"
 
 
-def _written(materials: list[Material]) -> list[str]:
+def _written(materials: list[Material], neo_hooke: bool) -> list[str]:
     # CalculiX reads 20 characters a number.
     lines = ["** Materials as in the document."]
     for material in materials:
@@ -157,10 +162,14 @@ def _written(materials: list[Material]) -> list[str]:
             numbers = [str(number) for number in material.elements]
             lines += [",".join(numbers[i : i + 16]) for i in range(0, len(numbers), 16)]
     for material in materials:
+        modulus, poisson = material.modulus_mpa, material.poisson
+        lines.append(f"*MATERIAL, NAME={material.name}")
+        if neo_hooke:
+            constants = modulus / (4.0 * (1.0 + poisson)), 6.0 * (1.0 - 2.0 * poisson) / modulus
+            lines += ["*HYPERELASTIC, NEO HOOKE", "{:.10g},{:.10g}".format(*constants)]
+        else:
+            lines += ["*ELASTIC", f"{modulus:.10g},{poisson:.10g}"]
         lines += [
-            f"*MATERIAL, NAME={material.name}",
-            "*ELASTIC",
-            f"{material.modulus_mpa:.10g},{material.poisson:.10g}",
             "*DENSITY",
             f"{1e-12 * material.density_kg_m3:.10g}",
             f"*SOLID SECTION, ELSET={material.element_set}, MATERIAL={material.name}",

@@ -70,7 +70,7 @@ def _meshes(tree: Tree, group: Any, design: Any) -> list[Any]:
 def _bodies(tree: Tree, group: Any, design: Any) -> list[Any]:
     voxels, runs = design.voxels, [[] for _ in design.phases]
     edge, low = voxels.size_mm, -0.5 * voxels.size_mm * voxels.layers
-    phases, offsets, halves = (list(v) for v in (voxels.phases, voxels.offsets, voxels.half_widths))
+    phases, offsets, halves = (v.tolist() for v in (voxels.phases, voxels.offsets, voxels.half_widths))
     for i in range(voxels.slices):
         width = 2 * halves[i]
         for layer in range(voxels.layers):

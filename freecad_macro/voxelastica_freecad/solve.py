@@ -79,7 +79,11 @@ def solve(analysis: Any, folder: str, ccx: str = "") -> dict[str, Any]:
     tools.update_objects()
     tools.setup_working_dir(str(path.parent))
     tools.inp_file_name = str(path)
-    tools.setup_ccx(ccx or None)
+    if ccx:
+        # FreeCAD's own settings would come first.
+        tools.ccx_binary, tools.ccx_binary_present = ccx, os.access(ccx, os.X_OK)
+    else:
+        tools.setup_ccx()
     if not tools.ccx_binary_present:
         raise MacroError("CalculiX (ccx) is not found; set its path in FreeCAD's FEM preferences or VOXELASTICA_CCX", 4)
     code = tools.start_ccx()
