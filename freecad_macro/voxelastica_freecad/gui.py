@@ -210,7 +210,7 @@ class Panel:
         """Close only: Build leaves the panel open."""
         button = QtGui.QDialogButtonBox.Close
         # PySide 6 has enumerations of Python here, PySide 2 numbers.
-        return getattr(button, "value", button)
+        return int(getattr(button, "value", button))
 
     def reject(self) -> bool:
         """Close."""

@@ -33,6 +33,13 @@ def _splines(design: Any, fraction: float) -> tuple[Any, Any, list[float]]:
     return edges[0], edges[1], [moduli[i * step + step // 2] for i in range(FACES)]
 
 
+def _piece(spline: Any, low: float, high: float) -> Any:
+    """Part of a spline as an edge, without the poles of the rest: files are several times smaller."""
+    piece = spline.copy()
+    piece.segment(low, high)
+    return piece.toShape()
+
+
 def build(tree: Tree, design: Any, fraction: float) -> dict[str, Any]:
     """The shell below a group ``Morphed``; returns ``shell``, ``hub`` (or ``None``) and the group."""
     group = tree.group("Morphed")
@@ -41,7 +48,7 @@ def build(tree: Tree, design: Any, fraction: float) -> dict[str, Any]:
     limits = [length * i / FACES for i in range(FACES + 1)]
     faces = []
     for low, high in zip(limits, limits[1:]):
-        faces.append(Part.makeRuledSurface(left.toShape(low, high), right.toShape(low, high)))
+        faces.append(Part.makeRuledSurface(_piece(left, low, high), _piece(right, low, high)))
     everything = []
     for i in range(design.spokes):
         turn = App.Placement(Vector(), App.Rotation(Vector(0, 0, 1), 360.0 * i / design.spokes))

@@ -47,6 +47,12 @@ def show(item: Any, *, visible: bool = True, **looks: Any) -> None:
     for name, value in looks.items():
         if hasattr(view, name):
             setattr(view, name, value)
+    if looks and hasattr(view, "ShapeAppearance"):
+        # FreeCAD 1.0 shines by default, which drowns the colours.
+        dull = list(view.ShapeAppearance)
+        for material in dull:
+            material.SpecularColor, material.Shininess = (0.05, 0.05, 0.05), 0.1
+        view.ShapeAppearance = tuple(dull)
 
 
 def note(item: Any, name: str, value: Any, text: str, kind: str = "App::PropertyString") -> None:

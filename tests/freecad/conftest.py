@@ -20,14 +20,21 @@ CHROOT = Path(os.environ.get("VOXELASTICA_FREECAD_CHROOT", ROOT / ".freecad-1.0"
 
 @dataclass
 class Host:
-    """A FreeCAD without a window."""
+    """A FreeCAD."""
 
     version: str
     chroot: Path | None
     home: Path
 
-    def run(self, script: Path, timeout: float = 900, prefix: tuple[str, ...] = (), **variables: object) -> Result:
-        """Runs a script with environment variables and returns what it said."""
+    def run(
+        self,
+        script: Path,
+        timeout: float = 900,
+        prefix: tuple[str, ...] = (),
+        window: bool = False,
+        **variables: object,
+    ) -> Result:
+        """Runs a script with environment variables, in a window if so asked, and returns what it said."""
         environment = {
             "PATH": "/usr/local/bin:/usr/bin:/bin",
             "HOME": str(self.home),
@@ -36,16 +43,22 @@ class Host:
             "OMP_NUM_THREADS": "2",
             **{name: str(value) for name, value in variables.items()},
         }
-        command = [*prefix, "freecadcmd", str(script)]
+        command = [*prefix, "freecad" if window else "freecadcmd", str(script)]
         if self.chroot is not None:
             inner = " ".join(map(shlex.quote, command))
             steps = [f"mount -t proc proc {self.chroot}/proc"]
             for place in (ROOT, self.home):
                 steps += [f"mkdir -p {self.chroot}{place}", f"mount --bind {place} {self.chroot}{place}"]
+            if window:
+                display = "/tmp/.X11-unix"
+                steps += [f"mkdir -p {self.chroot}{display}", f"mount --bind {display} {self.chroot}{display}"]
             steps.append(f"exec chroot {self.chroot} {inner}")
             command = ["unshare", "--mount", "sh", "-ec", "; ".join(steps)]
             # The mounts need the system's own programs.
             environment["PATH"] = "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin"
+        if window:
+            environment.update(QTWEBENGINE_DISABLE_SANDBOX="1", LIBGL_ALWAYS_SOFTWARE="1")
+            command = ["xvfb-run", "-a", "-s", "-screen 0 1400x950x24 -ac", *command]
         done = subprocess.run(
             command,
             check=False,
