@@ -138,6 +138,19 @@ def test_a_noisy_turned_and_shifted_scan_with_a_fifth_missing_is_recovered(
     assert "<svg" in (dome / "comparison.svg").read_text(encoding="utf-8")
 
 
+def test_half_a_dome_and_a_single_spoke_find_their_place(dome: Path, tmp_path: Path) -> None:
+    clean = surface(dome, 8, 16000, seed=7)
+    phi = np.arctan2(clean[:, 1], clean[:, 0])
+    noise = np.random.default_rng(8).normal(0, NOISE, clean.shape)
+    for name, part in {"half": phi > 0, "spoke": np.abs(phi) < 0.38}.items():
+        scan = (clean + noise)[part] @ rotation((1, 2, 3), 111.0).T + [50.0, 60.0, 70.0]
+        result = run("compare", dome, "--result", write(tmp_path / f"{name}.csv", "x,y,z", scan))
+        assert result.code == 0, result.err
+        record = read_json(dome / "comparison.json")
+        assert record["surface"] == "spokes", name
+        assert record["target"]["points"]["rms_mm"] == pytest.approx(NOISE, rel=0.15), (name, record["target"])
+
+
 def test_the_dome_of_another_pattern_and_its_hub_and_the_table_below_are_told_apart(roof: Path, tmp_path: Path) -> None:
     columns = profile(roof)
     clean = surface(roof, 6, 8000, seed=3)

@@ -7,7 +7,7 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use super::dome::Dome;
-use super::placement::{FACETED, Limits, Placement, ROUND, clipped_cost, refine};
+use super::placement::{FACETED, Freedom, Limits, Placement, ROUND, clipped_cost, refine};
 use crate::progress::Cancelled;
 
 /// Directions all over the sphere.
@@ -17,6 +17,10 @@ const COARSE_ITERATIONS: usize = 12;
 const MIDDLE_POINTS: usize = 2000;
 /// Starts that are improved.
 const BEST: usize = 5;
+/// Turns about the axis of a scan that lies beside it.
+const SPINS: usize = 6;
+/// Distance, as a share of the length, above which a fit is poor.
+const POOR: f64 = 0.003;
 /// Turns of a faceted dome about its axis that are tried within one facet.
 const PHASES: usize = 8;
 /// Scale of the biweight while the placement is only guessed, and largest distance that tells placements apart, as
@@ -26,24 +30,10 @@ const CLIP: f64 = 0.03;
 
 /// The best placement of a scan on a surface of revolution.
 pub(super) fn round(dome: &Dome, points: &[Vector3<f64>], length: f64, cancelled: Cancelled<'_>) -> Option<Placement> {
-    let few = spread_out(points, COARSE_POINTS);
-    let some = spread_out(points, MIDDLE_POINTS);
-    let coarse = Limits { iterations: COARSE_ITERATIONS, scale: Some(COARSE * length) };
-    let mut starts = Vec::new();
-    for direction in directions(&some) {
-        let fit = refine(dome, &few, along(dome, &some, &direction), ROUND, coarse, cancelled)?;
-        starts.push((clipped_cost(dome, &few, &fit.placement, COARSE * length), fit.placement));
-    }
-    starts.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut best: Option<(f64, Placement)> = None;
-    for (_, start) in starts.into_iter().take(BEST) {
-        let fit = refine(dome, &some, start, ROUND, Limits::NEAR, cancelled)?;
-        let cost = clipped_cost(dome, &some, &fit.placement, CLIP * length);
-        if best.as_ref().is_none_or(|b| cost < b.0) {
-            best = Some((cost, fit.placement));
-        }
-    }
-    best.map(|b| b.1)
+    let search = Search::new(dome, points, ROUND, length, cancelled);
+    let starts = directions(&search.some).iter().map(|d| along(dome, &search.some, d)).collect();
+    let near = search.best(search.coarsely(starts)?)?;
+    search.or_wider(near).map(|b| b.1)
 }
 
 /// The best placement of a scan on a dome of spokes, from the best one on its surface of revolution.
@@ -55,18 +45,78 @@ pub(super) fn faceted(
     cancelled: Cancelled<'_>,
 ) -> Option<Placement> {
     let count = dome.spokes.unwrap_or(1).max(1);
-    let some = spread_out(points, MIDDLE_POINTS);
-    let mut best: Option<(f64, Placement)> = None;
-    for phase in 0..PHASES {
-        let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), TAU * phase as f64 / (PHASES * count) as f64);
-        let start = Placement { rotation: turn * round.rotation, shift: turn * round.shift };
-        let fit = refine(dome, &some, start, FACETED, Limits::NEAR, cancelled)?;
-        let cost = clipped_cost(dome, &some, &fit.placement, CLIP * length);
-        if best.as_ref().is_none_or(|b| cost < b.0) {
-            best = Some((cost, fit.placement));
-        }
+    let search = Search::new(dome, points, FACETED, length, cancelled);
+    let starts = (0..PHASES).map(|phase| spun(round, TAU * phase as f64 / (PHASES * count) as f64)).collect();
+    let near = search.best(starts)?;
+    search.or_wider(near).map(|b| b.1)
+}
+
+/// Turned about the dome's axis.
+fn spun(placement: &Placement, angle: f64) -> Placement {
+    let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), angle);
+    Placement { rotation: turn * placement.rotation, shift: turn * placement.shift }
+}
+
+/// A search from many starts.
+struct Search<'a> {
+    dome: &'a Dome,
+    few: Vec<Vector3<f64>>,
+    some: Vec<Vector3<f64>>,
+    freedom: Freedom,
+    length: f64,
+    cancelled: Cancelled<'a>,
+}
+
+impl<'a> Search<'a> {
+    fn new(dome: &'a Dome, points: &[Vector3<f64>], freedom: Freedom, length: f64, cancelled: Cancelled<'a>) -> Self {
+        let (few, some) = (spread_out(points, COARSE_POINTS), spread_out(points, MIDDLE_POINTS));
+        Self { dome, few, some, freedom, length, cancelled }
     }
-    best.map(|b| b.1)
+
+    /// The starts that a few points fit best after some steps.
+    fn coarsely(&self, starts: Vec<Placement>) -> Option<Vec<Placement>> {
+        let limits = Limits { iterations: COARSE_ITERATIONS, scale: Some(COARSE * self.length) };
+        let mut tried = Vec::with_capacity(starts.len());
+        for start in starts {
+            let fit = refine(self.dome, &self.few, start, self.freedom, limits, self.cancelled)?;
+            tried.push((clipped_cost(self.dome, &self.few, &fit.placement, COARSE * self.length), fit.placement));
+        }
+        tried.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Some(tried.into_iter().take(BEST).map(|t| t.1).collect())
+    }
+
+    /// The best placement from these starts, with its mean squared distance.
+    fn best(&self, starts: Vec<Placement>) -> Option<(f64, Placement)> {
+        let mut best: Option<(f64, Placement)> = None;
+        for start in starts {
+            let fit = refine(self.dome, &self.some, start, self.freedom, Limits::NEAR, self.cancelled)?;
+            let cost = clipped_cost(self.dome, &self.some, &fit.placement, CLIP * self.length);
+            if best.as_ref().is_none_or(|b| cost < b.0) {
+                best = Some((cost, fit.placement));
+            }
+        }
+        best
+    }
+
+    /// A placement, or where it fits poorly the better one of it and what a part of a dome, all of it on one side of the axis, leads
+    /// to.
+    fn or_wider(&self, near: (f64, Placement)) -> Option<(f64, Placement)> {
+        if near.0 <= (POOR * self.length).powi(2) {
+            return Some(near);
+        }
+        let rho = self.dome.curve.points().iter().map(|p| p[0]);
+        let aside = Vector3::new(rho.sum::<f64>() / self.dome.curve.points().len() as f64, 0.0, 0.0);
+        let mut starts = Vec::new();
+        for direction in directions(&self.some) {
+            let upright = along(self.dome, &self.some, &direction);
+            for spin in 0..SPINS {
+                let turned = spun(&upright, TAU * spin as f64 / SPINS as f64);
+                starts.push(Placement { shift: turned.shift + aside, ..turned });
+            }
+        }
+        let wide = self.best(self.coarsely(starts)?)?;
+        Some(if wide.0 < near.0 { wide } else { near })
+    }
 }
 
 /// At most `most` of the points, from all over the list whatever its order.
