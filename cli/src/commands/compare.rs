@@ -3,9 +3,7 @@
 use voxelastica_core::output::folder::Staging;
 use voxelastica_core::output::json;
 use voxelastica_core::report::{VerificationPicture, verification_svg};
-use voxelastica_core::results::measured::{
-    Deviation, Face, Kind, MeasuredOptions, PlacementChoice, PlacementRecord, Surface,
-};
+use voxelastica_core::results::measured::{Deviation, Face, Kind, MeasuredOptions, PlacementChoice, Surface};
 use voxelastica_core::results::{MeasuredComparison, compare_table, read_table};
 use voxelastica_core::{Design, Error};
 
@@ -66,7 +64,7 @@ fn tell(design: &Design, options: &CompareOptions, comparison: &MeasuredComparis
         (Kind::Points, _) => "points of a surface of revolution".to_owned(),
     };
     console.say(format!("read      {} rows of {}: {what}", comparison.result.rows, comparison.result.file));
-    place(design, &comparison.target.placement, console);
+    place(design, &comparison.target, console);
     let say = |deviation: &Deviation, against: &str| {
         let shape = deviation.max_shape_error_percent.map_or_else(String::new, |s| format!("; as a shape {s:.3} %"));
         console.say(format!(
@@ -105,7 +103,8 @@ fn tell(design: &Design, options: &CompareOptions, comparison: &MeasuredComparis
 }
 
 /// States where the result was laid.
-fn place(design: &Design, placement: &PlacementRecord, console: &Console) {
+fn place(design: &Design, deviation: &Deviation, console: &Console) {
+    let placement = &deviation.placement;
     let vector = |v: [f64; 3]| v.map(|c| format!("{c:.4}")).join(", ");
     let length = design.input().strips.length_mm;
     match placement.choice {
@@ -124,8 +123,8 @@ fn place(design: &Design, placement: &PlacementRecord, console: &Console) {
                 vector(placement.dome_origin_mm)
             ));
             let doubt = |value: Option<f64>, limit: f64| value.is_none_or(|v| v > limit);
-            let points = placement.rotation_uncertainty_deg.is_some() || placement.shift_uncertainty_mm.is_some();
-            if points
+            // A scan without uncertainties leaves some motion open altogether.
+            if deviation.points.is_some()
                 && (doubt(placement.rotation_uncertainty_deg, UNCERTAIN.0)
                     || doubt(placement.shift_uncertainty_mm, UNCERTAIN.1 * length))
             {

@@ -116,6 +116,36 @@ impl Search<'_> {
         self.refined(dome, near.placement, freedom)
     }
 
+    /// The fits to the surfaces that may be asked for, from the best starts.
+    fn found(&self, round: &Dome, faceted: &Dome) -> Result<Vec<(Fit, Surface)>, Error> {
+        let (points, length) = (&self.points, self.job.length());
+        let wants = |surface| self.options.surface.is_none_or(|s| s == surface);
+        let on_round = start::round(round, points, length, self.cancelled).ok_or(Error::Cancelled)?;
+        let mut starts = Vec::new();
+        if wants(Surface::Spokes) {
+            let found = start::faceted(faceted, points, &on_round.1, length, self.cancelled).ok_or(Error::Cancelled)?;
+            starts.push((found, Surface::Spokes));
+        }
+        if wants(Surface::Revolution) {
+            starts.push((on_round, Surface::Revolution));
+        }
+        if starts.iter().all(|(found, _)| start::is_poor(found, length)) {
+            for (found, surface) in &mut starts {
+                let dome = if *surface == Surface::Spokes { faceted } else { round };
+                let other = start::beside(dome, points, length, self.cancelled).ok_or(Error::Cancelled)?;
+                if other.0 < found.0 {
+                    *found = other;
+                }
+            }
+        }
+        let mut fits = Vec::new();
+        for ((_, start), surface) in starts {
+            let (dome, freedom) = if surface == Surface::Spokes { (faceted, FACETED) } else { (round, ROUND) };
+            fits.push((self.refined(dome, start, freedom)?, surface));
+        }
+        Ok(fits)
+    }
+
     /// Places points of a dome; the surface is the one asked for, or the one they fit better.
     fn points(&self, round: &Dome) -> Result<(Fit, Option<Surface>), Error> {
         let length = self.job.length();
@@ -125,14 +155,7 @@ impl Search<'_> {
             fits.push((self.as_given(round)?, Surface::Revolution));
             fits.push((self.as_given(&faceted)?, Surface::Spokes));
         } else {
-            let start = start::round(round, &self.points, length, self.cancelled).ok_or(Error::Cancelled)?;
-            if self.options.surface != Some(Surface::Spokes) {
-                fits.push((self.refined(round, start, ROUND)?, Surface::Revolution));
-            }
-            if self.options.surface != Some(Surface::Revolution) {
-                let start = start::faceted(&faceted, &self.points, &start, length, self.cancelled);
-                fits.push((self.refined(&faceted, start.ok_or(Error::Cancelled)?, FACETED)?, Surface::Spokes));
-            }
+            fits = self.found(round, &faceted)?;
         }
         if let Some(surface) = self.options.surface {
             fits.retain(|f| f.1 == surface);

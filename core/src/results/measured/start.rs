@@ -28,12 +28,14 @@ const PHASES: usize = 8;
 const COARSE: f64 = 0.2;
 const CLIP: f64 = 0.03;
 
-/// The best placement of a scan on a surface of revolution.
-pub(super) fn round(dome: &Dome, points: &[Vector3<f64>], length: f64, cancelled: Cancelled<'_>) -> Option<Placement> {
+/// A placement with its mean squared distance, mm^2.
+pub(super) type Found = (f64, Placement);
+
+/// The best placement of a scan that goes round the axis on a surface of revolution.
+pub(super) fn round(dome: &Dome, points: &[Vector3<f64>], length: f64, cancelled: Cancelled<'_>) -> Option<Found> {
     let search = Search::new(dome, points, ROUND, length, cancelled);
     let starts = directions(&search.some).iter().map(|d| along(dome, &search.some, d)).collect();
-    let near = search.best(search.coarsely(starts)?)?;
-    search.or_wider(near).map(|b| b.1)
+    search.best(search.coarsely(starts)?)
 }
 
 /// The best placement of a scan on a dome of spokes, from the best one on its surface of revolution.
@@ -43,12 +45,33 @@ pub(super) fn faceted(
     round: &Placement,
     length: f64,
     cancelled: Cancelled<'_>,
-) -> Option<Placement> {
+) -> Option<Found> {
     let count = dome.spokes.unwrap_or(1).max(1);
     let search = Search::new(dome, points, FACETED, length, cancelled);
     let starts = (0..PHASES).map(|phase| spun(round, TAU * phase as f64 / (PHASES * count) as f64)).collect();
-    let near = search.best(starts)?;
-    search.or_wider(near).map(|b| b.1)
+    search.best(starts)
+}
+
+/// The best placement of a part of a dome, all of it on one side of the axis: six times the work.
+pub(super) fn beside(dome: &Dome, points: &[Vector3<f64>], length: f64, cancelled: Cancelled<'_>) -> Option<Found> {
+    let freedom = if dome.spokes.is_some() { FACETED } else { ROUND };
+    let search = Search::new(dome, points, freedom, length, cancelled);
+    let rho = dome.curve.points().iter().map(|p| p[0]);
+    let aside = Vector3::new(rho.sum::<f64>() / dome.curve.points().len() as f64, 0.0, 0.0);
+    let mut starts = Vec::new();
+    for direction in directions(&search.some) {
+        let upright = along(dome, &search.some, &direction);
+        for spin in 0..SPINS {
+            let turned = spun(&upright, TAU * spin as f64 / SPINS as f64);
+            starts.push(Placement { shift: turned.shift + aside, ..turned });
+        }
+    }
+    search.best(search.coarsely(starts)?)
+}
+
+/// Whether a placement fits so poorly that another is worth looking for.
+pub(super) fn is_poor(found: &Found, length: f64) -> bool {
+    found.0 > (POOR * length).powi(2)
 }
 
 /// Turned about the dome's axis.
@@ -86,8 +109,8 @@ impl<'a> Search<'a> {
     }
 
     /// The best placement from these starts, with its mean squared distance.
-    fn best(&self, starts: Vec<Placement>) -> Option<(f64, Placement)> {
-        let mut best: Option<(f64, Placement)> = None;
+    fn best(&self, starts: Vec<Placement>) -> Option<Found> {
+        let mut best: Option<Found> = None;
         for start in starts {
             let fit = refine(self.dome, &self.some, start, self.freedom, Limits::NEAR, self.cancelled)?;
             let cost = clipped_cost(self.dome, &self.some, &fit.placement, CLIP * self.length);
@@ -96,26 +119,6 @@ impl<'a> Search<'a> {
             }
         }
         best
-    }
-
-    /// A placement, or where it fits poorly the better one of it and what a part of a dome, all of it on one side of the axis, leads
-    /// to.
-    fn or_wider(&self, near: (f64, Placement)) -> Option<(f64, Placement)> {
-        if near.0 <= (POOR * self.length).powi(2) {
-            return Some(near);
-        }
-        let rho = self.dome.curve.points().iter().map(|p| p[0]);
-        let aside = Vector3::new(rho.sum::<f64>() / self.dome.curve.points().len() as f64, 0.0, 0.0);
-        let mut starts = Vec::new();
-        for direction in directions(&self.some) {
-            let upright = along(self.dome, &self.some, &direction);
-            for spin in 0..SPINS {
-                let turned = spun(&upright, TAU * spin as f64 / SPINS as f64);
-                starts.push(Placement { shift: turned.shift + aside, ..turned });
-            }
-        }
-        let wide = self.best(self.coarsely(starts)?)?;
-        Some(if wide.0 < near.0 { wide } else { near })
     }
 }
 
