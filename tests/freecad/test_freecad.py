@@ -161,7 +161,9 @@ def test_a_voxel_strip_is_solved_by_phase(system: Host, ccx: str, small: Path, t
 
 def test_edited_materials_are_what_is_solved(system: Host, small: Path, tmp_path: Path) -> None:
     """The deck gets the document's materials, all of its elements once, and no field any more."""
-    found = system.facts(tmp_path, VOXELASTICA_DESIGN=small, VOXELASTICA_PARTS="analysis", VOXELASTICA_BANDS=5)
+    variables = {"VOXELASTICA_PARTS": "analysis", "VOXELASTICA_BANDS": 5, "EDIT_MATERIAL": "7.25 MPa"}
+    found = system.facts(tmp_path, VOXELASTICA_DESIGN=small, **variables)
+    assert found["materials"][0][1] == pytest.approx(7.25)
     text = Path(found["input"]).read_text(encoding="utf-8")
     assert "*INITIAL CONDITIONS, TYPE=TEMPERATURE" not in text and "*RIGID BODY" in text and "TYPE=C3D8I" in text
     sections = re.findall(r"^\*SOLID SECTION, ELSET=(\S+), MATERIAL=(\S+)$", text, re.M)
