@@ -34,6 +34,8 @@ pub enum Command {
     Design(DesignOptions),
     /// Morph a design with every voxel resolved and compare the result with the target.
     Verify(VerifyOptions),
+    /// Compare a mid-line of another solver, or a scan of the real dome, with the target and the prediction.
+    Compare(CompareOptions),
     /// Make the files to print, cut and assemble a design.
     Fabricate(FabricateOptions),
     /// Let heat and current through a design's strip: fields, effective conductivities, pictures.
@@ -95,6 +97,64 @@ pub struct VerifyOptions {
     /// Do it even if it seems to need more memory than there is.
     #[arg(long)]
     pub yes: bool,
+}
+
+/// Options of `compare`.
+#[derive(Debug, Args)]
+pub struct CompareOptions {
+    /// Folder that `design` wrote.
+    pub folder: PathBuf,
+    /// The measured shape, mm: columns s_mm,x_mm,z_mm (a mid-line), rho_mm,z_mm (a meridian) or x_mm,y_mm,z_mm (points
+    /// of a dome, anywhere in space).
+    #[arg(long, value_name = "FILE.csv")]
+    pub result: PathBuf,
+    /// How it is laid onto the target.
+    #[arg(long, value_enum, default_value_t = Placing::Auto)]
+    pub placement: Placing,
+    /// The surface that points are compared with.
+    #[arg(long, value_enum, default_value_t = SurfaceChoice::Auto)]
+    pub surface: SurfaceChoice,
+    /// The side of the sheet that was scanned.
+    #[arg(long, value_enum, default_value_t = FaceChoice::Middle)]
+    pub face: FaceChoice,
+    /// Exit with 6 if the largest error exceeds this share of the length, percent.
+    #[arg(long, value_name = "PCT", value_parser = positive)]
+    pub target_error: Option<f64>,
+}
+
+/// Ways to lay a result onto the target.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Placing {
+    /// A mid-line by its rim, a scan by the best fit.
+    Auto,
+    /// Not moved at all.
+    AsGiven,
+    /// A mid-line's first point on the target's.
+    Rim,
+    /// The rigid motion that fits best.
+    Fit,
+}
+
+/// Surfaces that points are compared with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum SurfaceChoice {
+    /// The one that fits better.
+    Auto,
+    /// The target's surface of revolution.
+    Revolution,
+    /// Spokes that are straight across their width.
+    Spokes,
+}
+
+/// Sides of the sheet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum FaceChoice {
+    /// The middle of the thickness, where the target is.
+    Middle,
+    /// The outer face.
+    Outer,
+    /// The inner face.
+    Inner,
 }
 
 /// Options of `fabricate`.

@@ -17,6 +17,7 @@ fn main() -> ExitCode {
     let result = match arguments.command {
         Command::Design(options) => commands::design::run(&options, &console),
         Command::Verify(options) => commands::verify::run(&options, &console),
+        Command::Compare(options) => commands::compare::run(&options, &console),
         Command::Fabricate(options) => commands::fabricate::run(&options, &console),
         Command::Conduct(options) => commands::conduct::run(&options, &console),
         Command::Micromechanics(options) => commands::micromechanics::run(&options, &console),

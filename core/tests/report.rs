@@ -94,6 +94,7 @@ fn picture(design: &Design) -> VerificationPicture {
         rms_error_percent: 0.13,
         length_mm: design.input().strips.length_mm,
         error_along: Some(profile.s.iter().map(|s| [*s, 0.1]).collect()),
+        cloud: curve.clone(),
     }
 }
 

@@ -1,5 +1,6 @@
 //! The subcommands.
 
+pub mod compare;
 pub mod conduct;
 pub mod design;
 pub mod fabricate;
@@ -9,9 +10,13 @@ pub mod verify;
 
 use std::path::Path;
 
+use voxelastica_core::output::Provenance;
 use voxelastica_core::{Design, DesignInput, Error, InputError, Limits};
 
 use crate::console::Console;
+
+/// Exit code where `--target-error` is missed.
+const MISSED: u8 = 6;
 
 /// The design that `voxelastica design` wrote into a folder, computed again.
 fn designed(folder: &Path, console: &Console) -> Result<Design, Error> {
@@ -24,6 +29,20 @@ fn designed(folder: &Path, console: &Console) -> Result<Design, Error> {
     let input = DesignInput::read_unless(&path, &cancelled)?;
     Design::compute_unless(&input, Limits { allow_large: true }, &cancelled)
         .map_err(|error| error.in_file(&path.display().to_string()))
+}
+
+/// Refuses a `design.json` whose design is not the one that the folder's files were written from.
+fn require_unchanged(design: &Design, path: &Path) -> Result<(), Error> {
+    let text = std::fs::read_to_string(path).unwrap_or_default();
+    let recorded: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+    match recorded["provenance"]["design_sha256"].as_str() {
+        Some(hash) if hash != Provenance::of(design.input()).design_sha256 => {
+            let problem = "the design was changed after the files beside it were written";
+            let error = InputError::new("design", "", problem).help("run design again");
+            Err(Error::Input(error.in_file(&path.display().to_string())))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// A number with four significant digits.

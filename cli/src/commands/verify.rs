@@ -1,8 +1,5 @@
 //! `voxelastica verify`.
 
-use std::path::Path;
-
-use voxelastica_core::output::Provenance;
 use voxelastica_core::output::folder::Staging;
 use voxelastica_core::output::json;
 use voxelastica_core::report::{VerificationPicture, verification_svg};
@@ -11,14 +8,11 @@ use voxelastica_core::results::{
     EmbeddedOptions, EmbeddedVerification, Verification, compare, verify, verify_embedded,
 };
 use voxelastica_core::solver::ccx::{Ccx, Status};
-use voxelastica_core::{Design, Error, InputError};
+use voxelastica_core::{Design, Error};
 
-use super::designed;
+use super::{MISSED, designed, require_unchanged};
 use crate::args::{ModelChoice, SolverChoice, VerifyOptions};
 use crate::console::Console;
-
-/// Exit code where `--target-error` is missed.
-const MISSED: u8 = 6;
 
 /// What was solved, and by what.
 enum Solved {
@@ -65,20 +59,6 @@ pub fn run(options: &VerifyOptions, console: &Console) -> Result<u8, Error> {
             Ok(MISSED)
         }
         _ => Ok(0),
-    }
-}
-
-/// Refuses a `design.json` whose design is not the one that the folder's files were written from.
-fn require_unchanged(design: &Design, path: &Path) -> Result<(), Error> {
-    let text = std::fs::read_to_string(path).unwrap_or_default();
-    let recorded: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
-    match recorded["provenance"]["design_sha256"].as_str() {
-        Some(hash) if hash != Provenance::of(design.input()).design_sha256 => {
-            let problem = "the design was changed after the files beside it were written";
-            let error = InputError::new("design", "", problem).help("run design again");
-            Err(Error::Input(error.in_file(&path.display().to_string())))
-        }
-        _ => Ok(()),
     }
 }
 
@@ -203,6 +183,7 @@ fn write(design: &Design, options: &VerifyOptions, solved: &Solved) -> Result<()
             let length = design.input().strips.length_mm;
             verification.midline_mm.iter().zip(&c.distances_mm).map(|(p, d)| [p[0], 100.0 * d / length]).collect()
         }),
+        cloud: Vec::new(),
     };
     let text = json::to_text(verification).map_err(|e| Error::Internal(format!("verification.json: {e}")))?;
     let mut staging = Staging::new(&options.folder)?;

@@ -27,6 +27,8 @@ pub const TARGET: Colour = Colour([0xb3, 0xcb, 0xe8]);
 pub const PREDICTED: Colour = Colour([0x12, 0x4d, 0x8c]);
 /// What a solver or a measurement found.
 pub const MEASURED: Colour = Colour([0xc2, 0x41, 0x0c]);
+/// The single points of a measurement.
+pub const CLOUD: Colour = Colour([0xe9, 0x9b, 0x78]);
 /// The line of thrust.
 pub const THRUST: Colour = Colour([0xb4, 0x2a, 0x7d]);
 /// The hub.

@@ -4,7 +4,7 @@ use super::ReportError;
 use super::chart::{Axis, Chart, LEFT, Layer, RIGHT, bounds, equal_aspect, thinned};
 use super::figures::WIDTH;
 use super::figures::meridian::error_chart;
-use super::palette::{INK, MEASURED, MUTED, PREDICTED, TARGET};
+use super::palette::{CLOUD, INK, MEASURED, MUTED, PREDICTED, TARGET};
 use super::svg::{Anchor, Stroke, Svg};
 use super::text::number;
 
@@ -29,6 +29,8 @@ pub struct VerificationPicture {
     pub length_mm: f64,
     /// Distance from the target along the strip: arc length in mm, percent of the length.
     pub error_along: Option<Vec<[f64; 2]>>,
+    /// Single points of a scan, drawn faintly under everything.
+    pub cloud: Vec<[f64; 2]>,
 }
 
 const TARGET_LINE: Stroke = Stroke::solid(TARGET, 7.0);
@@ -59,12 +61,14 @@ fn drawing(input: &VerificationPicture) -> Result<Svg, ReportError> {
     };
     let (target, solver) = (finite(&input.target), finite(&input.solver));
     let prediction = input.prediction.as_deref().map(finite).unwrap_or_default();
-    let all = || target.iter().chain(&prediction).chain(&solver);
+    let cloud = finite(&input.cloud);
+    let all = || target.iter().chain(&prediction).chain(&solver).chain(&cloud);
     let x = bounds(all().map(|p| p[0]), 0.04);
     let z = bounds(all().map(|p| p[1]), 0.08);
     let (x, z, height) = equal_aspect(x, z, WIDTH, [110.0, 480.0]);
     let mut layers = vec![
         Layer::Line(target, TARGET_LINE),
+        Layer::Dots(cloud, 1.1, CLOUD),
         Layer::Line(solver.clone(), SOLVER_LINE),
         Layer::Dots(thinned(solver, MOST_DOTS), 2.4, MEASURED),
     ];

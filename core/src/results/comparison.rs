@@ -29,19 +29,29 @@ pub struct Comparison {
 #[must_use]
 pub fn compare(profile: &Profile, midline: &[MidlinePoint]) -> Option<Comparison> {
     let length = *profile.s.last()?;
+    distances(|s| profile.position(s), |p| distance_from_curve(profile, p), length, midline)
+}
+
+/// Compares a mid-line with a shape, given by its position at an arc length and the distance from its nearest point.
+pub(super) fn distances(
+    position: impl Fn(f64) -> [f64; 2],
+    nearest: impl Fn(&MidlinePoint) -> f64,
+    length: f64,
+    midline: &[MidlinePoint],
+) -> Option<Comparison> {
     if midline.is_empty() {
         return None;
     }
     let distances_mm: Vec<f64> = midline
         .iter()
         .map(|[s, x, z]| {
-            let [tx, tz] = profile.position(*s);
+            let [tx, tz] = position(*s);
             (x - tx).hypot(z - tz)
         })
         .collect();
     let largest = distances_mm.iter().fold(0.0_f64, |m, d| m.max(*d));
     let mean_square = distances_mm.iter().map(|d| d * d).sum::<f64>() / distances_mm.len() as f64;
-    let shape = midline.iter().map(|p| distance_from_curve(profile, p)).fold(0.0_f64, f64::max);
+    let shape = midline.iter().map(nearest).fold(0.0_f64, f64::max);
     Some(Comparison {
         max_error_percent: 100.0 * largest / length,
         rms_error_percent: 100.0 * mean_square.sqrt() / length,

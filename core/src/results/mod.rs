@@ -4,10 +4,12 @@ pub mod ccx_dat;
 pub mod comparison;
 pub mod embedded;
 mod error;
+pub mod measured;
 pub mod verification;
 pub mod vtu;
 
 pub use comparison::{Comparison, MidlinePoint, compare};
 pub use embedded::{EmbeddedOptions, EmbeddedVerification, verify_embedded};
 pub use error::ResultError;
+pub use measured::{MeasuredComparison, MeasuredOptions, compare_table, read_table};
 pub use verification::{Verification, verify};
