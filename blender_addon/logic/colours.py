@@ -38,6 +38,10 @@ PHASES = np.hstack([linear(_rgb(_PHASES)), np.ones((3, 1))]).astype(np.float32)
 GREY = tuple(float(x) for x in linear(_rgb((_GREY,)))[0]) + (1.0,)
 
 
+#: The solver's mid-line.
+MIDLINE = tuple(float(x) for x in linear(_rgb(("ff3b1f",)))[0]) + (1.0,)
+
+
 @dataclass(frozen=True)
 class Scale:
     """What colours stand for: a range of figures, or names."""

@@ -42,3 +42,19 @@ def midlines(midline_mm: Sequence[Sequence[float]], rim_radius_mm: float, spokes
     line = np.asarray(midline_mm, dtype=float)
     rho, z = rim_radius_mm - line[:, 1], line[:, 2]
     return [_turned(rho, z, azimuth) for azimuth in np.arange(spokes) * (2 * np.pi / spokes)]
+
+
+def tube(line: np.ndarray, radius: float, sides: int = 6) -> tuple[np.ndarray, np.ndarray]:
+    """Points and quads of a tube around a line that lies in an upright plane through the axis."""
+    along = np.gradient(line, axis=0)
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    middle = line[len(line) // 2]
+    aside = np.array([-middle[1], middle[0], 0.0]) / np.hypot(middle[0], middle[1])
+    up = np.cross(along, aside)
+    turns = np.arange(sides) * (2 * np.pi / sides)
+    ring = np.cos(turns)[None, :, None] * aside + np.sin(turns)[None, :, None] * up[:, None, :]
+    points = line[:, None, :] + radius * ring
+    row, place = np.meshgrid(np.arange(len(line) - 1), np.arange(sides), indexing="ij")
+    beside = (place + 1) % sides
+    corners = (row * sides + place, row * sides + beside, (row + 1) * sides + beside, (row + 1) * sides + place)
+    return points.reshape(-1, 3), np.stack(corners, axis=-1).reshape(-1, 4).astype(np.int32)

@@ -14,7 +14,17 @@ TABLES = ("", "target", "strips", "thrust", "materials", "materials.custom", "vo
 #: Keys that the panel handles itself or never shows.
 _SPECIAL = {"target.meridian", "materials.phases"}
 #: Words that title case would spoil.
-_SPELLING = {"gltf": "glTF", "stl": "STL", "3mf": "3MF", "gcvf": "GCVF", "dxf": "DXF", "svg": "SVG"}
+_SPELLING = {
+    "gltf": "glTF",
+    "stl": "STL",
+    "3mf": "3MF",
+    "three_mf": "3MF",
+    "gcvf": "GCVF",
+    "dxf": "DXF",
+    "svg": "SVG",
+    "abaqus": "ABAQUS",
+    "calculix": "CalculiX",
+}
 
 
 @dataclass(frozen=True)
@@ -57,11 +67,12 @@ class Field:
 
 def title(word: str) -> str:
     """A key or choice as a person reads it: ``voxel_solid`` as *Voxel Solid*."""
-    if word in _SPELLING:
-        return _SPELLING[word]
     if any(letter.isupper() for letter in word):
         return word
-    return re.sub(r"[^_ -]+", lambda part: part[0][0].upper() + part[0][1:], word).replace("_", " ")
+    for plain, spelt in _SPELLING.items():
+        word = re.sub(rf"(?<![a-z0-9]){plain}(?![a-z0-9])", spelt, word)
+    words = (part if any(map(str.isupper, part)) else part[0].upper() + part[1:] for part in re.split("[_ ]+", word))
+    return re.sub("-([a-z])", lambda letter: f"-{letter[1].upper()}", " ".join(words))
 
 
 def label(name: str, unit: str | None) -> str:

@@ -8,12 +8,13 @@ from typing import Any
 
 import bpy
 
-from ..logic import colours, designs
+from ..logic import designs
+from ..logic.library import api
 
 COLOURS = "Voxelastica"
 MATERIAL = "Voxelastica Colours"
 _TEXT_MATERIAL = "Voxelastica Labels"
-_LINE_MATERIAL = "Voxelastica Mid-Line"
+_TEXT_COLOUR = (0.01, 0.01, 0.01, 1.0)
 
 _NAMES = {
     "SPOKES": "spokes",
@@ -122,21 +123,17 @@ def colour_material() -> bpy.types.Material:
     return made
 
 
-def plain_material(kind: str) -> bpy.types.Material:
-    """The material of labels or of the solver's mid-line."""
-    name, colour = {
-        "LABELS": (_TEXT_MATERIAL, (0.01, 0.01, 0.01, 1.0)),
-        "MIDLINE": (_LINE_MATERIAL, (0.9, 0.1, 0.02, 1.0)),
-    }[kind]
-    found = bpy.data.materials.get(name)
+def label_material() -> bpy.types.Material:
+    """The dark material of labels; made once a file, then the user's."""
+    found = bpy.data.materials.get(_TEXT_MATERIAL)
     if found:
         return found
-    made = bpy.data.materials.new(name)
+    made = bpy.data.materials.new(_TEXT_MATERIAL)
     made.use_nodes = True
-    made.diffuse_color = colour
+    made.diffuse_color = _TEXT_COLOUR
     shader = next((node for node in made.node_tree.nodes if node.type == "BSDF_PRINCIPLED"), None)
     if shader:
-        shader.inputs["Base Color"].default_value = colour
+        shader.inputs["Base Color"].default_value = _TEXT_COLOUR
     return made
 
 
@@ -147,14 +144,9 @@ def use_material(target: bpy.types.Object, material: bpy.types.Material) -> None
 
 
 def prepared(root: bpy.types.Object) -> designs.Prepared | None:
-    """The design that a flower stores; None where it stores none.
-
-    :raises VoxelasticaError: a stored design that this version of the library does not take
-    """
+    """The design that a flower stores; None where it stores none, or one that this version of the library does not take."""
     text = root.voxelastica.design
-    return designs.stored(text) if text else None
-
-
-def grey() -> tuple[float, ...]:
-    """Colour of what has no figure."""
-    return colours.GREY
+    try:
+        return designs.stored(text) if text else None
+    except api().VoxelasticaError:
+        return None

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import math
+
 import bpy
 import numpy as np
 
@@ -15,6 +17,8 @@ _LETTER = 0.058
 _BAR = 0.06
 _GAP = 0.12
 _STEPS = 64
+#: How far it leans up from the ground, degrees: it can be read from above and from the front.
+_TILT = math.radians(60)
 
 
 def draw(root: bpy.types.Object, scales: list[Scale]) -> None:
@@ -32,10 +36,10 @@ def draw(root: bpy.types.Object, scales: list[Scale]) -> None:
     lines: list[str] = []
     quads, rgba = [], []
     count = sum(len(scale.marks()) + 1 for scale in scales) + len(scales) - 1
-    top = 0.5 * (count - 1) * _LINE * radius
+    top = count * _LINE * radius
 
     def box(high: float, low: float, colours: np.ndarray) -> None:
-        x = (left, left + _BAR * radius)
+        x = (0.0, _BAR * radius)
         quads.append([(x[0], low, 0), (x[1], low, 0), (x[1], high, 0), (x[0], high, 0)])
         rgba.append(colours)
 
@@ -69,5 +73,8 @@ def draw(root: bpy.types.Object, scales: list[Scale]) -> None:
     text.size = _LETTER * radius
     text.space_line = _LINE / _LETTER
     text.align_y = "TOP_BASELINE"
-    labels.location = (left + (_BAR + 0.03) * radius, top - 0.35 * text.size, 0)
-    flower.use_material(labels, flower.plain_material("LABELS"))
+    base = top - 0.35 * text.size
+    bar.location = (left, 0, 0)
+    labels.location = (left + (_BAR + 0.03) * radius, base * math.cos(_TILT), base * math.sin(_TILT))
+    bar.rotation_euler = labels.rotation_euler = (_TILT, 0, 0)
+    flower.use_material(labels, flower.label_material())

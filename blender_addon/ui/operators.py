@@ -77,8 +77,14 @@ def _show(context: bpy.types.Context) -> None:
     context.space_data.shading.color_type = "VERTEX"
     region = next((region for region in context.area.regions if region.type == "WINDOW"), None)
     if region:
+        root = context.object
+        beside = [child for child in root.children if child.voxelastica.part in ("LEGEND", "LABELS")]
+        for child in beside:
+            child.select_set(True)
         with context.temp_override(region=region):
             bpy.ops.view3d.view_selected()
+        for child in beside:
+            child.select_set(False)
 
 
 class VOXELASTICA_OT_new(bpy.types.Operator):
@@ -112,7 +118,7 @@ class VOXELASTICA_OT_new(bpy.types.Operator):
         except (OSError, ValueError) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
-        root = make(context, design, self.preset.replace("_", " ").capitalize())
+        root = make(context, {"name": self.preset} | design, self.preset.replace("_", " ").capitalize())
         preview.design_changed(root)
         _show(context)
         if root.voxelastica.problem:
@@ -147,13 +153,15 @@ class VOXELASTICA_OT_from_mesh(bpy.types.Operator):
             settings.thrust.choice = "least-contrast"
             settings.target_object = source
         preview.mesh_changed(root)
-        if settings.problem and not settings.design:
-            # Nothing to show: no empty flower is left behind.
+        if not settings.meridian:
+            # Nothing was taken: no empty flower is left behind.
             self.report({"ERROR"}, settings.problem)
             flower.remove(root)
             context.view_layer.objects.active = source
             source.select_set(True)
             return {"CANCELLED"}
+        if settings.problem:  # The panel says what would help.
+            self.report({"WARNING"}, settings.problem)
         _show(context)
         return {"FINISHED"}
 

@@ -10,19 +10,67 @@ from typing import Any
 import bpy
 
 from ..logic import designs, library, results
+from ..logic.parameters import Field
 from . import animation, flower, jobs, preview, properties
+
+
+def _lines(context: bpy.types.Context, text: str, indent: int) -> list[str]:
+    """A text in lines that fit the sidebar."""
+    scale = context.preferences.system.ui_scale
+    width = context.region.width / scale if context.region else 260
+    return textwrap.wrap(text, max(18, int((width - indent) / 6.1)))
 
 
 def say(
     layout: bpy.types.UILayout, context: bpy.types.Context, text: str, icon: str = "NONE", alert: bool = False
 ) -> None:
-    """A message, wrapped to the sidebar's width."""
-    scale = context.preferences.system.ui_scale
-    width = context.region.width / scale if context.region else 260
+    """A message in a box, wrapped to the sidebar's width."""
     box = layout.box().column(align=True)
     box.alert = alert
-    for i, line in enumerate(textwrap.wrap(text, max(20, int((width - 70) / 6.4)))):
+    for i, line in enumerate(_lines(context, text, 90 if icon != "NONE" else 65)):
         box.label(text=line, icon=icon if i == 0 else "BLANK1" if icon != "NONE" else "NONE")
+
+
+def tell(layout: bpy.types.UILayout, context: bpy.types.Context, *texts: str) -> None:
+    """Figures below the fields they follow from, wrapped."""
+    column = layout.column(align=True)
+    column.scale_y = 0.85
+    for text in texts:
+        for i, line in enumerate(_lines(context, text, 38)):
+            column.label(text=line if i == 0 else f"    {line}")
+
+
+def put(layout: bpy.types.UILayout, group: Any, field: Field) -> None:
+    """A field: numbers with their names inside, choices beside or below theirs."""
+    name = field.name
+    if field.type == "choices":
+        layout.label(text=f"{field.label}:")
+        grid = layout.grid_flow(columns=2, even_columns=True, align=True)
+        grid.use_property_split = False
+        for choice in field.choices:
+            grid.prop_enum(group, name, choice)
+        return
+    if hasattr(group, f"use_{name}"):
+        box = layout.row()
+        box.use_property_split = False
+        box.prop(group, f"use_{name}", text=field.label)
+        if getattr(group, f"use_{name}"):
+            row = layout.row(align=True)
+            row.use_property_split = False
+            row.prop(group, name, text="")
+        return
+    number = field.type in ("number", "integer", "integers", "numbers")
+    if len(field.label) > (30 if number else 12) or field.type in ("integers", "numbers"):
+        layout.label(text=f"{field.label}:")
+        row = layout.row(align=True)
+        row.use_property_split = False
+        row.prop(group, name, text="")
+    elif number:
+        row = layout.row()
+        row.use_property_split = False
+        row.prop(group, name)
+    else:
+        layout.prop(group, name)
 
 
 class _Panel:
@@ -55,7 +103,7 @@ class VOXELASTICA_PT_main(_Panel, bpy.types.Panel):
         if settings.problem:
             say(layout, context, settings.problem, "ERROR", alert=True)
             if settings.design:
-                layout.label(text="The preview shows the last design that could be made.")
+                tell(layout, context, "The preview is the last design that could be made.")
         if settings.hint:
             say(layout, context, settings.hint, "INFO")
 
@@ -76,18 +124,6 @@ class _Child(_Panel):
         self.show(layout, context, root, flower.settings(root))
 
 
-def _optional(layout: bpy.types.UILayout, group: Any, name: str) -> None:
-    """A field that may be left out, behind its checkbox."""
-    if hasattr(group, f"use_{name}"):
-        row = layout.row(heading=type(group).bl_rna.properties[name].name)
-        row.prop(group, f"use_{name}", text="")
-        field = row.row()
-        field.active = getattr(group, f"use_{name}")
-        field.prop(group, name, text="")
-    else:
-        layout.prop(group, name)
-
-
 def _stored(settings: Any) -> dict[str, Any]:
     return designs.parsed(settings.design)
 
@@ -101,11 +137,11 @@ class VOXELASTICA_PT_target(_Child, bpy.types.Panel):
 
     def show(self, layout: Any, context: bpy.types.Context, root: bpy.types.Object, settings: Any) -> None:
         target = settings.target
-        layout.prop(target, "kind")
+        layout.prop(target, "kind", text="")
         if target.kind == "hemi-ellipsoid":
-            layout.prop(target, "aspect_ratio")
+            put(layout, target, properties.known()["target.aspect_ratio"])
         elif target.kind == "inclination-polynomial":
-            self._coefficients(layout, target)
+            self._coefficients(layout, context, target)
         elif target.kind == "points":
             layout.prop(target, "file")
         else:
@@ -116,36 +152,39 @@ class VOXELASTICA_PT_target(_Child, bpy.types.Panel):
             row.operator("voxelastica.keep_size", text="Keep Its Size")
             if settings.meridian_note and settings.meridian_kind == "mesh":
                 say(layout, context, settings.meridian_note)
-        self._size(layout, context, settings)
+        self._size(layout, context, root, settings)
 
-    def _coefficients(self, layout: Any, target: Any) -> None:
+    def _coefficients(self, layout: Any, context: bpy.types.Context, target: Any) -> None:
         numbers = target.coefficients_deg
         row = layout.row()
-        row.label(text=f"{properties.known()['target.coefficients_deg'].label} of xi, from rim (0) to hub (1)")
+        row.label(text=f"{properties.known()['target.coefficients_deg'].label}:")
         for sign in (True, False):
             part = row.row()
-            part.enabled = sign and len(numbers) < 21 or not sign and len(numbers) > 1
+            part.enabled = len(numbers) < 21 if sign else len(numbers) > 1
             change = part.operator("voxelastica.list", text="", icon="ADD" if sign else "REMOVE")
             change.what, change.add = "coefficients", sign
+        tell(layout, context, "xi runs from the rim (0) to the hub (1)")
         column = layout.column(align=True)
+        column.use_property_split = False
         for i, item in enumerate(numbers):
             power = len(numbers) - 1 - i
             column.prop(item, "value", text=f"xi^{power}" if power > 1 else ("xi", "1")[power == 0])
 
-    def _size(self, layout: Any, context: bpy.types.Context, settings: Any) -> None:
-        design = _stored(settings)
-        if not design or settings.problem:
+    def _size(self, layout: Any, context: bpy.types.Context, root: bpy.types.Object, settings: Any) -> None:
+        found = flower.prepared(root)
+        if found is None or settings.problem:
             return
-        found = designs.stored(settings.design)
-        summary, strips = found.design.summary, design["strips"]
+        summary, strips = found.design.summary, found.input["strips"]
         unit = flower.unit_mm(context.scene)
         across = 2 * (strips["hub_radius_mm"] + strips["length_mm"])
-        column = layout.column(align=True)
-        column.label(text=f"Flat: {across:.4g} mm across, {across / unit:.3g} units of the scene")
-        column.label(text=f"Closed: {2 * summary['rim_radius_mm']:.4g} mm across, {summary['height_mm']:.4g} mm high")
+        notes = [
+            f"Flat: {across:.4g} mm across ({across / unit:.3g} units)",
+            f"Closed: {2 * summary['rim_radius_mm']:.4g} mm across, {summary['height_mm']:.4g} mm high",
+        ]
         scale = preview.scale_of_mesh(settings, found)
         if scale is not None:
-            column.label(text=f"Scale: {scale:.4g} of the mesh; the length rules it")
+            notes.append(f"Scale: {scale:.4g} of the mesh, ruled by the length")
+        tell(layout, context, *notes)
 
 
 class VOXELASTICA_PT_spokes(_Child, bpy.types.Panel):
@@ -156,10 +195,10 @@ class VOXELASTICA_PT_spokes(_Child, bpy.types.Panel):
     bl_options = set()
 
     def show(self, layout: Any, context: bpy.types.Context, root: bpy.types.Object, settings: Any) -> None:
-        column = layout.column()
+        column = layout.column(align=True)
         for field in properties.known().values():
             if field.table == "strips":
-                column.prop(settings.strips, field.name)
+                put(column, settings.strips, field)
 
 
 class VOXELASTICA_PT_thrust(_Child, bpy.types.Panel):
@@ -174,20 +213,22 @@ class VOXELASTICA_PT_thrust(_Child, bpy.types.Panel):
         row = layout.row()
         row.active = settings.thrust.hub == "free"
         row.prop(settings.thrust, "choice")
-        if not settings.design:
+        found = flower.prepared(root)
+        if found is None:
             return
-        summary = designs.stored(settings.design).design.summary
+        summary = found.design.summary
         per, total = summary["thrust"]["per_spoke"], summary["thrust"]["total"]
 
         def span(values: Any, key: str) -> str:
             low, high = values["beam"][key], values["plane_strain"][key]
             return f"{low:.3g} to {high:.3g} N" if low != high else f"{low:.3g} N"
 
-        column = layout.column(align=True)
-        column.label(text=f"Force on the hub: {span(total, 'vertical_n')}")
-        column.label(text=f"Thrust at each rim seat: {span(per, 'horizontal_n')}")
-        column.label(
-            text=f"Contrast: {summary['contrast']:.3g} of {summary['contrast_reach']:.3g} that the phases reach"
+        tell(
+            layout,
+            context,
+            f"Force on the hub: {span(total, 'vertical_n')}",
+            f"Thrust at each seat: {span(per, 'horizontal_n')}",
+            f"Contrast: {summary['contrast']:.3g}; the phases reach {summary['contrast_reach']:.3g}",
         )
 
 
@@ -209,7 +250,7 @@ class VOXELASTICA_PT_materials(_Child, bpy.types.Panel):
                 change = row.operator("voxelastica.list", text=text, icon="ADD" if sign else "REMOVE")
                 change.what, change.add = "phases", sign
         if len(phases) > 2:
-            layout.prop(materials, "intermediate_fraction")
+            put(layout, materials, properties.known()["materials.intermediate_fraction"])
         for i, item in enumerate(materials.custom):
             box = layout.box()
             row = box.row()
@@ -218,7 +259,7 @@ class VOXELASTICA_PT_materials(_Child, bpy.types.Panel):
             change.what, change.add, change.index = "materials", False, i
             for field in properties.known().values():
                 if field.table == "materials.custom" and field.name != "name":
-                    _optional(box, item, field.name)
+                    put(box, item, field)
         change = layout.operator("voxelastica.list", text="Custom Material", icon="ADD")
         change.what, change.add = "materials", True
 
@@ -233,13 +274,13 @@ class VOXELASTICA_PT_voxels(_Child, bpy.types.Panel):
     def show(self, layout: Any, context: bpy.types.Context, root: bpy.types.Object, settings: Any) -> None:
         for field in properties.known().values():
             if field.table == "voxels":
-                _optional(layout, settings.voxels, field.name)
-        if settings.design:
-            summary = designs.stored(settings.design).design.summary
-            column = layout.column(align=True)
-            column.label(text=f"{summary['voxels_per_spoke']:,} voxels a spoke")
+                put(layout, settings.voxels, field)
+        found = flower.prepared(root)
+        if found is not None:
+            summary = found.design.summary
+            tell(layout, context, f"{summary['voxels_per_spoke']:,} voxels a spoke")
             if summary.get("predicted_error_percent") is not None:
-                column.label(text=f"Predicted: {summary['predicted_error_percent']:.2g} % of the length off the target")
+                tell(layout, context, f"Predicted error: {summary['predicted_error_percent']:.2g} % of the length")
 
 
 class VOXELASTICA_PT_preview(_Child, bpy.types.Panel):
@@ -260,11 +301,14 @@ class VOXELASTICA_PT_preview(_Child, bpy.types.Panel):
         column.prop(settings, "show_legend")
         column.prop(settings, "show_voxels")
         if settings.show_voxels:
-            layout.prop(settings, "voxel_limit")
+            row = layout.row()
+            row.use_property_split = False
+            row.prop(settings, "voxel_limit")
             layout.prop(settings, "voxel_phase")
             if settings.voxels_note:
-                say(layout, context, settings.voxels_note)
+                tell(layout, context, settings.voxels_note)
         column = layout.column(align=True)
+        column.use_property_split = False
         column.prop(settings, "along")
         column.prop(settings, "across")
         if settings.states:
@@ -297,24 +341,41 @@ class VOXELASTICA_PT_export(_Child, bpy.types.Panel):
     def show(self, layout: Any, context: bpy.types.Context, root: bpy.types.Object, settings: Any) -> None:
         layout.prop(settings, "design_name")
         layout.prop(settings, "folder")
-        for table, heading in (("decks", "Decks"), ("fabrication", "Print Files and glTF")):
-            header, body = layout.panel(f"voxelastica_{table}", default_closed=True)
-            chosen = getattr(settings, table).write
-            header.label(text=f"{heading}: {len(chosen)} kinds" if chosen else f"{heading}: none")
-            if body is None:
-                continue
-            for field in properties.known().values():
-                if field.table != table or (field.name == "pitch_um" and settings.fabrication.printer != "custom"):
-                    continue
-                if field.type == "choices":
-                    column = body.column(heading=field.label)
-                    column.prop(getattr(settings, table), field.name, expand=False)
-                else:
-                    _optional(body, getattr(settings, table), field.name)
         if not _running(layout, root, "Export"):
             layout.operator("voxelastica.export", text="Export", icon="EXPORT")
         if settings.export_note:
             say(layout, context, settings.export_note)
+
+
+class _Kinds(_Child):
+    bl_parent_id = "VOXELASTICA_PT_export"
+    table = ""
+
+    def draw_header_preset(self, context: bpy.types.Context) -> None:
+        root = flower.shown(context)
+        chosen = getattr(flower.settings(root), self.table).write
+        self.layout.label(text=f"{len(chosen)} kinds" if len(chosen) != 1 else "1 kind")
+
+    def show(self, layout: Any, context: bpy.types.Context, root: bpy.types.Object, settings: Any) -> None:
+        for field in properties.known().values():
+            if field.table == self.table and (field.name != "pitch_um" or settings.fabrication.printer == "custom"):
+                put(layout, getattr(settings, self.table), field)
+
+
+class VOXELASTICA_PT_decks(_Kinds, bpy.types.Panel):
+    """Decks of solvers."""
+
+    bl_label = "Decks"
+    bl_order = 1
+    table = "decks"
+
+
+class VOXELASTICA_PT_fabrication(_Kinds, bpy.types.Panel):
+    """Files to print and show."""
+
+    bl_label = "Print Files and glTF"
+    bl_order = 2
+    table = "fabrication"
 
 
 class VOXELASTICA_PT_verify(_Child, bpy.types.Panel):
@@ -332,8 +393,7 @@ class VOXELASTICA_PT_verify(_Child, bpy.types.Panel):
             say(layout, context, settings.verify_note, "ERROR")
         if settings.verification:
             record = json.loads(settings.verification)
-            for note in results.verify_notes(record, _stored(settings)):
-                say(layout, context, note)
+            tell(layout, context, *results.verify_notes(record, _stored(settings)))
             layout.prop(settings, "show_midline")
 
 
@@ -346,5 +406,7 @@ CLASSES = (
     VOXELASTICA_PT_voxels,
     VOXELASTICA_PT_preview,
     VOXELASTICA_PT_export,
+    VOXELASTICA_PT_decks,
+    VOXELASTICA_PT_fabrication,
     VOXELASTICA_PT_verify,
 )

@@ -12,7 +12,7 @@ from typing import Any
 import bpy
 import numpy as np
 
-from ..logic import designs, inputs, lines, surface, voxel_mesh
+from ..logic import colours, designs, inputs, lines, surface, voxel_mesh
 from ..logic.library import LibraryMissing, api
 from . import animation, flower, legend, meshes, properties, target_mesh
 
@@ -24,7 +24,7 @@ def design_changed(root: bpy.types.Object) -> None:
         return
     settings = flower.settings(root)
     try:
-        found, hint = _computed(settings)
+        found, hint = _computed(root)
     except LibraryMissing as error:
         settings.problem = str(error)
     except Exception as error:  # noqa: BLE001 - a slider must never raise; the panel shows whatever went wrong
@@ -42,8 +42,11 @@ def design_changed(root: bpy.types.Object) -> None:
         look_changed(root)
 
 
-def _computed(settings: Any) -> tuple[designs.Prepared, str]:
+def _computed(root: bpy.types.Object) -> tuple[designs.Prepared, str]:
     """The design of a form, and a hint."""
+    settings = flower.settings(root)
+    if settings.target.kind == "mesh" and settings.target_object is not None and _outdated(settings):
+        target_mesh.take(root)
     values = properties.values(settings)
     hint = ""
     if values["target.kind"] == "points":
@@ -63,6 +66,11 @@ def _computed(settings: Any) -> tuple[designs.Prepared, str]:
     return designs.computed(inputs.assemble(values, properties.known())), hint
 
 
+def _outdated(settings: Any) -> bool:
+    """Whether the stored meridian is not the target object's about the axis that is set."""
+    return settings.meridian_kind != "mesh" or settings.meridian_axis != settings.target.axis
+
+
 def mesh_changed(root: bpy.types.Object) -> None:
     """Takes the meridian of the target object anew."""
     settings = flower.settings(root)
@@ -73,11 +81,8 @@ def mesh_changed(root: bpy.types.Object) -> None:
         return
     try:
         target_mesh.take(root)
-    except Exception as error:  # noqa: BLE001
-        if not isinstance(error, (api().VoxelasticaError, ValueError, OSError)):
-            raise
-        name = settings.target_object.name if settings.target_object else "No mesh"
-        settings.problem = f"{name}: {str(error).removeprefix('design: ')}"
+    except ValueError as error:
+        settings.problem = str(error)
         return
     design_changed(root)
 
@@ -116,7 +121,9 @@ def morph_changed(root: bpy.types.Object) -> None:
     if found is None or not _writable(root):
         return
     settings = flower.settings(root)
-    if not settings.states:
+    if settings.states:
+        root.update_tag()
+    else:
         for child, shape in shapes(root):
             meshes.place(child.data, shape(settings.morph))
     if settings.colour_by == "curvature":
@@ -174,15 +181,15 @@ def _spokes(root: bpy.types.Object, settings: Any, found: designs.Prepared) -> N
     mesh = root.data
     quads = found.flower(settings.along, settings.across).quads
     spokes = found.design.spokes
-    grid = [settings.along, settings.across, spokes]
-    same = len(mesh.polygons) == len(quads) and list(root.get("voxelastica_grid", ())) == grid
+    grid = f"{settings.along} x {settings.across} x {spokes}"
+    same = len(mesh.polygons) == len(quads) and settings.shown == grid
     if same and not settings.states:
         meshes.place(mesh, shapes(root)[0][1](settings.morph))
     else:
         _without_keys(root)
         meshes.fill(mesh, shapes(root)[0][1](0.0 if settings.states else settings.morph), np.asarray(quads), 4)
         meshes.smooth(mesh)
-        root["voxelastica_grid"] = grid
+        settings.shown = grid
     flower.use_material(root, flower.colour_material())
 
 
@@ -192,7 +199,7 @@ def _hub(root: bpy.types.Object, settings: Any, found: designs.Prepared) -> None
     corners = np.array(found.design.hub(0.0 if settings.states else settings.morph)) * factor
     _without_keys(child)
     meshes.fill(child.data, corners, np.arange(len(corners)), len(corners))
-    meshes.colour(child.data, np.array([flower.grey()] * len(corners)), False)
+    meshes.colour(child.data, np.array([colours.GREY] * len(corners)), False)
     flower.use_material(child, flower.colour_material())
 
 
@@ -211,7 +218,7 @@ def _voxel_pieces(settings: Any, found: designs.Prepared) -> list[tuple[int, vox
     """The spokes whose voxels are shown, with their faces."""
     voxels = found.design.voxels
     each = len(voxels.phases)
-    phase = min(settings.voxel_phase, len(found.design.phases)) - 1
+    phase = min(int(settings.voxel_phase or 0), len(found.design.phases)) - 1
     if each > settings.voxel_limit:
         slices = voxel_mesh.slices_within(voxels.offsets, settings.voxel_limit)
         return [(0, found.exposed(slices, phase))] if slices else []
@@ -228,8 +235,8 @@ def _voxels(root: bpy.types.Object, settings: Any, found: designs.Prepared) -> N
     settings.voxels_note = _voxels_note(settings, found, pieces)
     child = flower.new_mesh(root, "VOXELS")
     _without_keys(child)
-    key = [zlib.crc32(settings.design.encode()) & 0x7FFFFFFF, settings.voxel_phase, settings.voxel_limit]
-    if list(child.get("voxelastica_voxels", ())) == key and len(child.data.vertices) and not settings.states:
+    key = f"{zlib.crc32(settings.design.encode())} {settings.voxel_phase} {settings.voxel_limit}"
+    if child.voxelastica.shown == key and len(child.data.vertices) and not settings.states:
         meshes.place(child.data, dict(shapes(root))[child](settings.morph))
         return
     if not pieces:
@@ -244,7 +251,7 @@ def _voxels(root: bpy.types.Object, settings: Any, found: designs.Prepared) -> N
     phases = np.concatenate([faces.phases for _, faces in pieces])
     rgba = surface.Scale("phase", names=tuple(found.design.phases)).colours(phases)
     meshes.colour(child.data, rgba, True)
-    child["voxelastica_voxels"] = key
+    child.voxelastica.shown = key
     flower.use_material(child, flower.colour_material())
 
 
@@ -265,19 +272,19 @@ def _midline(root: bpy.types.Object, settings: Any, found: designs.Prepared) -> 
     if record is None or not settings.show_midline:
         flower.remove(flower.part(root, "MIDLINE"))
         return
-    child = flower.new_curve(root, "MIDLINE", "CURVE")
-    curve, factor = child.data, 1.0 / flower.unit_mm(flower.scene_of(root))
-    curve.dimensions = "3D"
-    curve.splines.clear()
-    for points in lines.midlines(record["midline_mm"], record["rim_radius_mm"], record["spokes"]):
-        spline = curve.splines.new("POLY")
-        spline.points.add(len(points) - 1)
-        rows = np.ones((len(points), 4), dtype=np.float32)
-        rows[:, :3] = points * factor
-        spline.points.foreach_set("co", rows.ravel())
-    curve.bevel_depth = 0.004 * found.input["strips"]["length_mm"] * factor
-    curve.bevel_resolution = 2
-    flower.use_material(child, flower.plain_material("MIDLINE"))
+    child = flower.new_mesh(root, "MIDLINE")
+    radius = 0.004 * found.input["strips"]["length_mm"]
+    pieces = [
+        lines.tube(line, radius)
+        for line in lines.midlines(record["midline_mm"], record["rim_radius_mm"], record["spokes"])
+    ]
+    starts = np.cumsum([0, *(len(points) for points, _ in pieces)])
+    quads = np.concatenate([quads + start for (_, quads), start in zip(pieces, starts, strict=False)])
+    points = np.concatenate([points for points, _ in pieces]) / flower.unit_mm(flower.scene_of(root))
+    meshes.fill(child.data, points, quads, 4)
+    meshes.smooth(child.data)
+    meshes.colour(child.data, np.tile(colours.MIDLINE, (len(points), 1)), False)
+    flower.use_material(child, flower.colour_material())
 
 
 def _colours(root: bpy.types.Object, settings: Any, found: designs.Prepared) -> None:

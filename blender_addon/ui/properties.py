@@ -28,6 +28,7 @@ from ..logic.surface import CHOICES as COLOURS
 
 #: Where sliders end when dragged; what may be typed is the table's.
 _SLIDERS = {"mm": (0.1, 500.0, 100), "MPa": (0.1, 10000.0, 100), "deg": (-180.0, 180.0, 100)}
+_HEMISPHERE_DEG = (-90.0, 90.0)
 _INT_MOST = 2**31 - 1
 _FLOAT_MOST = 3.4e38
 #: Item of an optional choice that leaves the key out.
@@ -47,6 +48,7 @@ PARTS = (
 _classes: list[type] = []
 _fields: dict[str, Field] = {}
 _quiet = 0
+_phase_choices: list[tuple[str, str, str]] = []
 
 
 @contextmanager
@@ -87,6 +89,13 @@ def _materials(self: Any, _context: Any, _text: str) -> list[tuple[str, str]]:
     hidden = {name for name, _ in custom}
     listed = [(m["name"], f"{m['modulus_mpa']:g} MPa") for m in api().materials() if m["name"] not in hidden]
     return custom + listed
+
+
+def _phase_items(self: Any, _context: Any) -> list[tuple[str, str, str]]:
+    # Blender keeps no reference to these strings: they must live on.
+    names = [item.material for item in self.materials.phases] if self is not None else []
+    _phase_choices[:] = [("0", "All", "All phases")] + [(str(i + 1), name, "") for i, name in enumerate(names)]
+    return _phase_choices
 
 
 def _number(field: Field, start: Any) -> Any:
@@ -219,6 +228,8 @@ def _settings(groups: dict[str, type]) -> dict[str, Any]:
         "hint": StringProperty(name="Hint", description="What the design's user should know"),
         "meridian": StringProperty(description="Meridian of the mesh, [rho, z] in mm, as JSON"),
         "meridian_kind": StringProperty(description="The kind of target that the meridian was taken for"),
+        "meridian_axis": StringProperty(description="The axis that the meridian was taken about"),
+        "shown": StringProperty(description="What the mesh was last made for"),
         "meridian_note": StringProperty(name="Meridian", description="Where the meridian came from"),
         "target_object": PointerProperty(
             name="Mesh",
@@ -252,12 +263,10 @@ def _settings(groups: dict[str, type]) -> dict[str, Any]:
             step=10_000,
             update=_drawn("look_changed"),
         ),
-        "voxel_phase": IntProperty(
-            name="Only Phase",
-            description="0 shows the voxels of all phases; 1 is the softest phase, 2 the next",
-            default=0,
-            min=0,
-            max=3,
+        "voxel_phase": EnumProperty(
+            name="Show Phase",
+            description="Whose voxels are shown; a hidden phase lets you look inside",
+            items=_phase_items,
             update=_drawn("look_changed"),
         ),
         "voxels_note": StringProperty(name="Voxels Shown"),
@@ -329,6 +338,8 @@ def register() -> None:
         _classes.append(plain)
         bpy.utils.register_class(plain)
     tables: dict[str, dict[str, Any]] = {}
+    # A custom material starts as the library's first one.
+    start |= {f"materials.custom.{name}": value for name, value in api().materials()[0].items() if name != "name"}
     for key, field in _fields.items():
         if field.table:
             own = _property(field, start.get(key, field.default))
@@ -441,6 +452,9 @@ def assign(settings: Any, design: dict[str, Any]) -> None:
                 settings.design_name = found[key] or ""
             elif field.table != "materials.custom":
                 _set(getattr(settings, field.table), field, found[key], exact)
+        if not settings.target.coefficients_deg:  # A hemisphere, for when the kind is changed to a polynomial.
+            for value in _HEMISPHERE_DEG:
+                settings.target.coefficients_deg.add().value = value
         settings.materials.phases.clear()
         for name in found["materials.phases"] or ():
             settings.materials.phases.add().material = name
@@ -453,4 +467,5 @@ def assign(settings: Any, design: dict[str, Any]) -> None:
         meridian = found["target.meridian"]
         settings.meridian = json.dumps(meridian) if meridian else ""
         settings.meridian_kind = found["target.kind"] if meridian else ""
+        settings.meridian_axis = settings.target.axis
         settings.exact = json.dumps(exact)

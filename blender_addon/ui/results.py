@@ -24,7 +24,7 @@ def _idle(cls: type, context: bpy.types.Context) -> bool:
     if job:
         cls.poll_message_set(f"{job.name} is still running: wait for it, or cancel it")
         return False
-    if root.voxelastica.problem or not root.voxelastica.design:
+    if root.voxelastica.problem or flower.prepared(root) is None:
         cls.poll_message_set("The design as set cannot be made: see the message at the top of the panel")
         return False
     return True

@@ -4,11 +4,13 @@
 from __future__ import annotations
 
 import json
+import re
 
 import bpy
 import numpy as np
 
 from ..logic import mesh_target
+from ..logic.library import api
 from . import flower, properties
 
 
@@ -38,22 +40,25 @@ def measured(context: bpy.types.Context, source: bpy.types.Object) -> tuple[np.n
 def take(root: bpy.types.Object) -> None:
     """Takes the meridian of a flower's target object and stores it with the flower.
 
-    :raises VoxelasticaError: a mesh that is no surface of revolution
-    :raises ValueError: no mesh, or one without faces
+    :raises ValueError: no mesh, one without faces, or one that is no surface of revolution; the message names it
     """
     settings = flower.settings(root)
     source = settings.target_object
     if source is None:
-        raise ValueError("choose an object whose surface is one of revolution, such as half a UV sphere")
+        raise ValueError("Choose an object whose surface is one of revolution, such as half a UV sphere.")
     if source.type != "MESH":
-        raise ValueError("it is no mesh: choose a mesh object, or convert it to one")
+        raise ValueError(f"{source.name} is no mesh: choose a mesh object, or convert it to one.")
     if source.name not in bpy.context.scene.objects:
-        raise ValueError("this object is not in the scene any more: choose another one")
+        raise ValueError(f"{source.name} is not in the scene any more: choose another object.")
     vertices, triangles = measured(bpy.context, source)
     share = settings.strips.hub_radius_mm / settings.strips.length_mm
-    found = mesh_target.extract(vertices, triangles, settings.target.axis, share)
+    try:
+        found = mesh_target.extract(vertices, triangles, settings.target.axis, share)
+    except (api().VoxelasticaError, ValueError) as error:
+        problem = re.sub(r"^(design: )?target\.file = \S+: ", "", str(error))
+        raise ValueError(f"{source.name}: {problem}") from error
     with properties.quiet():
         settings.target.kind = "mesh"
         settings.meridian = json.dumps(found.meridian)
-        settings.meridian_kind = "mesh"
+        settings.meridian_kind, settings.meridian_axis = "mesh", settings.target.axis
         settings.meridian_note = f"{source.name}: rim radius {found.rim_radius_mm:.4g} mm, round within {found.roundness_percent:.2g} % of it"
