@@ -9,6 +9,7 @@ from typing import Any
 import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
+from mathutils import Vector
 
 from ..logic import library, presets
 from . import animation, flower, preview, properties
@@ -70,21 +71,23 @@ def make(context: bpy.types.Context, design: dict[str, Any], name: str) -> bpy.t
     return root
 
 
-def _show(context: bpy.types.Context) -> None:
+def _show(context: bpy.types.Context, root: bpy.types.Object) -> None:
     """Colours and the whole flower in the view that a flower was made in."""
     if not preferences(context).show_colours or context.space_data is None or context.space_data.type != "VIEW_3D":
         return
     context.space_data.shading.color_type = "VERTEX"
-    region = next((region for region in context.area.regions if region.type == "WINDOW"), None)
-    if region:
-        root = context.object
-        beside = [child for child in root.children if child.voxelastica.part in ("LEGEND", "LABELS")]
-        for child in beside:
-            child.select_set(True)
-        with context.temp_override(region=region):
-            bpy.ops.view3d.view_selected()
-        for child in beside:
-            child.select_set(False)
+    frame(context.space_data.region_3d, root)
+
+
+def frame(view: bpy.types.RegionView3D, root: bpy.types.Object) -> None:
+    """Moves a view, but for a camera's, so that a flower and its legend are in it, sidebar or not."""
+    found = flower.prepared(root)
+    if found is None or view.view_perspective == "CAMERA":
+        return
+    strips = found.input["strips"]
+    radius = (strips["hub_radius_mm"] + strips["length_mm"]) / flower.unit_mm(flower.scene_of(root))
+    view.view_location = root.matrix_world @ Vector((0.45 * radius, 0.0, 0.15 * radius))
+    view.view_distance = 3.2 * radius * max(root.matrix_world.to_scale())
 
 
 class VOXELASTICA_OT_new(bpy.types.Operator):
@@ -120,7 +123,7 @@ class VOXELASTICA_OT_new(bpy.types.Operator):
             return {"CANCELLED"}
         root = make(context, {"name": self.preset} | design, self.preset.replace("_", " ").capitalize())
         preview.design_changed(root)
-        _show(context)
+        _show(context, root)
         if root.voxelastica.problem:
             self.report({"WARNING"}, root.voxelastica.problem)
         return {"FINISHED"}
@@ -162,7 +165,7 @@ class VOXELASTICA_OT_from_mesh(bpy.types.Operator):
             return {"CANCELLED"}
         if settings.problem:  # The panel says what would help.
             self.report({"WARNING"}, settings.problem)
-        _show(context)
+        _show(context, root)
         return {"FINISHED"}
 
 
@@ -356,7 +359,7 @@ class VOXELASTICA_OT_import(bpy.types.Operator, ImportHelper):
             with properties.quiet():
                 settings.target.file = str((path.parent / design["target"]["file"]).resolve())
         preview.design_changed(root)
-        _show(context)
+        _show(context, root)
         if settings.problem:
             self.report({"WARNING"}, settings.problem)
         return {"FINISHED"}

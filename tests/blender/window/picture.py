@@ -81,10 +81,8 @@ def close_all() -> None:
 
 def frame() -> None:
     """The shown flower in the middle of the view, without its outline."""
-    root = bpy.data.objects["Hemisphere"]
-    for part in (root, *root.children):
-        part.select_set(True)
-    inside(lambda: bpy.ops.view3d.view_selected())
+    _, area = view()
+    module("ui.operators").frame(area.spaces.active.region_3d, bpy.data.objects["Hemisphere"])
     for chosen in bpy.context.selected_objects:
         chosen.select_set(False)
 
