@@ -219,15 +219,18 @@ class VOXELASTICA_PT_thrust(_Child, bpy.types.Panel):
         summary = found.design.summary
         per, total = summary["thrust"]["per_spoke"], summary["thrust"]["total"]
 
-        def span(values: Any, key: str) -> str:
+        def force(values: Any, key: str, ways: tuple[str, str]) -> str:
+            """A range from narrow spokes (a beam) to wide ones (plane strain), and its sense."""
             low, high = values["beam"][key], values["plane_strain"][key]
-            return f"{low:.3g} to {high:.3g} N" if low != high else f"{low:.3g} N"
+            if low == high == 0:
+                return "none"
+            return f"{abs(low):.3g} to {abs(high):.3g} N {ways[low < 0]}"
 
         tell(
             layout,
             context,
-            f"Force on the hub: {span(total, 'vertical_n')}",
-            f"Thrust at each seat: {span(per, 'horizontal_n')}",
+            f"Force on the hub: {force(total, 'vertical_n', ('up', 'down'))}",
+            f"Each seat pushes: {force(per, 'horizontal_n', ('inward', 'outward'))}",
             f"Contrast: {summary['contrast']:.3g}; the phases reach {summary['contrast_reach']:.3g}",
         )
 

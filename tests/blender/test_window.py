@@ -21,7 +21,10 @@ def test_the_panel_in_a_window(addon_zip: Path, tmp_path: Path) -> None:
     command = [ROOT / "tests" / "blender" / "window" / "run", addon_zip, tmp_path, root]
     done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=900)
     said = done.stdout + done.stderr
-    for what, names in (("work", ("empty", "panel", "problem", "verified", "voxels")), ("panels", ("all_1", "all_2"))):
+    for what, names in (
+        ("work", ("empty", "panel", "problem", "verified", "voxels", "mesh")),
+        ("panels", ("all_1", "all_2", "running", "results")),
+    ):
         assert (tmp_path / f"found_{what}.json").exists(), said
         found = json.loads((tmp_path / f"found_{what}.json").read_text(encoding="utf-8"))
         assert "error" not in found, found["error"]

@@ -39,7 +39,7 @@ for scale in ((0.08, 0.08, 0.05), (0.06, 0.06, 0.06), (0.05, 0.05, 0.08)):
     found = off(root, scale[0], scale[2])
     ratio = scale[0] / scale[2]
     host.report(
-        f"half a UV sphere scaled to a/b = {ratio:g}, rotated and moved: profile {found:.3f} % of the length off"
+        f"half a UV sphere scaled to a/b = {ratio:g}, rotated and moved: profile {found:.1e} % of the length off"
     )
     assert found < 0.5, found
 

@@ -68,11 +68,11 @@ while not job.finished and (job.share < 0.02 or turns < 20) and time.monotonic()
     turns += 1
     time.sleep(0.01)
 host.report(f"while the solver ran the morph was moved {turns} times in {time.monotonic() - start:.1f} s")
-if not job.finished:
-    assert bpy.ops.voxelastica.cancel() == {"FINISHED"}
+assert bpy.ops.voxelastica.cancel() == {"FINISHED"}
 assert job.wait(120)
 assert jobs.look() is None and ended == [(root.name, job)], ended
-assert job.cancelled and job.error.code == job.error.CANCELLED, job.error
+# On a very fast machine the solver may have ended before it was cancelled.
+assert job.cancelled and (job.error is None or job.error.code == job.error.CANCELLED), job.error
 assert jobs.running(root) is None
 
 # A flower that is gone when its job ends is no error.
@@ -107,4 +107,12 @@ if shutil.which("ccx"):
     host.refused(bpy.ops.voxelastica.verify, "decks.write")
 else:
     host.report("CalculiX is not installed: not verified with it")
+
+# Switching the add-on off ends what runs.
+job = host.module("logic.job").Job(
+    "test", lambda progress: [time.sleep(0.01) for _ in iter(lambda: progress(1, 2), False)]
+)
+jobs._jobs[root.session_uid] = (job, finish)
+bpy.ops.preferences.addon_disable(module=host.NAME)
+assert job.finished and job.cancelled
 host.done()

@@ -126,6 +126,20 @@ def steps() -> Iterator[float]:
             yield 1.0
             sidebar()
             picture(f"all_{i + 1}")
+        root.voxelastica.show_voxels = False
+        root.voxelastica.strips.length_mm, root.voxelastica.strips.hub_radius_mm = 60.0, 6.0
+        assert inside(lambda: bpy.ops.voxelastica.verify()) == {"FINISHED"}
+        yield 1.0
+        picture("running")
+        while module("ui.jobs").running(root) is not None:
+            yield 0.2
+        root.voxelastica.folder = FOLDER
+        root.voxelastica.decks.write = {"graded_solid"}
+        assert inside(lambda: bpy.ops.voxelastica.export()) == {"FINISHED"}
+        while module("ui.jobs").running(root) is not None:
+            yield 0.2
+        yield 1.0
+        picture("results")
         close_all()
         FOUND["done"] = True
         return
@@ -167,6 +181,17 @@ def steps() -> Iterator[float]:
     root.voxelastica.show_midline = False
     yield 1.5
     picture("voxels")
+    # A modelled dome as the target.
+    inside(lambda: bpy.ops.mesh.primitive_uv_sphere_add(segments=48, ring_count=24, radius=0.08, location=(-0.3, 0, 0)))
+    dome = inside(lambda: bpy.context.object)
+    dome.scale.z = 0.6
+    bpy.context.view_layer.update()
+    inside(lambda: bpy.ops.voxelastica.from_mesh())
+    made = bpy.data.objects[f"{dome.name} flower"]
+    assert made.voxelastica.problem == "", made.voxelastica.problem
+    made.location.x = 0.4
+    yield 1.0
+    picture("mesh")
     FOUND["done"] = True
 
 
