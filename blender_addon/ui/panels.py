@@ -151,7 +151,7 @@ class VOXELASTICA_PT_target(_Child, bpy.types.Panel):
             row.operator("voxelastica.use_mesh", text="Take from Mesh", icon="FILE_REFRESH")
             row.operator("voxelastica.keep_size", text="Keep Its Size")
             if settings.meridian_note and settings.meridian_kind == "mesh":
-                say(layout, context, settings.meridian_note)
+                tell(layout, context, settings.meridian_note)
         self._size(layout, context, root, settings)
 
     def _coefficients(self, layout: Any, context: bpy.types.Context, target: Any) -> None:
@@ -183,7 +183,7 @@ class VOXELASTICA_PT_target(_Child, bpy.types.Panel):
         ]
         scale = preview.scale_of_mesh(settings, found)
         if scale is not None:
-            notes.append(f"Scale: {scale:.4g} of the mesh, ruled by the length")
+            notes.append(f"Scale: {scale:.4g} of the mesh")
         tell(layout, context, *notes)
 
 
@@ -229,8 +229,8 @@ class VOXELASTICA_PT_thrust(_Child, bpy.types.Panel):
         tell(
             layout,
             context,
-            f"Force on the hub: {force(total, 'vertical_n', ('up', 'down'))}",
-            f"Each seat pushes: {force(per, 'horizontal_n', ('inward', 'outward'))}",
+            f"On the hub: {force(total, 'vertical_n', ('up', 'down'))}",
+            f"At each seat: {force(per, 'horizontal_n', ('inward', 'outward'))}",
             f"Contrast: {summary['contrast']:.3g}; the phases reach {summary['contrast_reach']:.3g}",
         )
 

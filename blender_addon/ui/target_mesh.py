@@ -61,4 +61,8 @@ def take(root: bpy.types.Object) -> None:
         settings.target.kind = "mesh"
         settings.meridian = json.dumps(found.meridian)
         settings.meridian_kind, settings.meridian_axis = "mesh", settings.target.axis
-        settings.meridian_note = f"{source.name}: rim radius {found.rim_radius_mm:.4g} mm, round within {found.roundness_percent:.2g} % of it"
+        share = found.roundness_percent
+        roundness = f"{share:.2g}" if share >= 0.01 else "less than 0.01"
+        settings.meridian_note = (
+            f"{source.name}: rim radius {found.rim_radius_mm:.4g} mm, {roundness} % (rms) out of round"
+        )

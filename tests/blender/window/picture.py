@@ -182,14 +182,18 @@ def steps() -> Iterator[float]:
     yield 1.5
     picture("voxels")
     # A modelled dome as the target.
-    inside(lambda: bpy.ops.mesh.primitive_uv_sphere_add(segments=48, ring_count=24, radius=0.08, location=(-0.3, 0, 0)))
+    for old in list(bpy.data.objects):
+        bpy.data.objects.remove(old)
+    inside(lambda: bpy.ops.mesh.primitive_uv_sphere_add(segments=48, ring_count=24, radius=0.08, location=(-0.2, 0, 0)))
     dome = inside(lambda: bpy.context.object)
     dome.scale.z = 0.6
     bpy.context.view_layer.update()
     inside(lambda: bpy.ops.voxelastica.from_mesh())
     made = bpy.data.objects[f"{dome.name} flower"]
     assert made.voxelastica.problem == "", made.voxelastica.problem
-    made.location.x = 0.4
+    made.voxelastica.morph = 0.8
+    for chosen in bpy.context.selected_objects:
+        chosen.select_set(False)
     yield 1.0
     picture("mesh")
     FOUND["done"] = True
