@@ -12,7 +12,7 @@ from bpy_extras.io_utils import ImportHelper
 from mathutils import Vector
 
 from ..logic import library, presets
-from . import animation, flower, preview, properties
+from . import animation, flower, jobs, preview, properties
 from .preferences import PACKAGE, preferences
 
 
@@ -256,6 +256,31 @@ class VOXELASTICA_OT_update(bpy.types.Operator):
         return {"FINISHED"}
 
 
+class VOXELASTICA_OT_remove(bpy.types.Operator):
+    """Delete the shown flower with its hub, target, voxels, legend and mid-line"""
+
+    bl_idname = "voxelastica.remove"
+    bl_label = "Delete Voxelastica Flower"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if not has_flower(cls, context):
+            return False
+        job = jobs.running(flower.shown(context))
+        if job:
+            cls.poll_message_set(f"{job.name} is still running: cancel it first")
+            return False
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        root = flower.shown(context)
+        for child in list(flower.parts(root)):
+            flower.remove(child)
+        flower.remove(root)
+        return {"FINISHED"}
+
+
 class VOXELASTICA_OT_show_colours(bpy.types.Operator):
     """Let this 3D view show the colours of attributes in its solid shading"""
 
@@ -434,6 +459,7 @@ CLASSES = (
     VOXELASTICA_OT_use_mesh,
     VOXELASTICA_OT_keep_size,
     VOXELASTICA_OT_update,
+    VOXELASTICA_OT_remove,
     VOXELASTICA_OT_show_colours,
     VOXELASTICA_OT_list,
     VOXELASTICA_OT_import,

@@ -100,6 +100,7 @@ class VOXELASTICA_PT_main(_Panel, bpy.types.Panel):
         row.prop(root, "name", text="", icon="MESH_CIRCLE")
         row.menu("VOXELASTICA_MT_presets", text="", icon="PRESET")
         row.operator("voxelastica.update", text="", icon="FILE_REFRESH")
+        row.operator("voxelastica.remove", text="", icon="TRASH")
         if settings.problem:
             say(layout, context, settings.problem, "ERROR", alert=True)
             if settings.design:

@@ -23,6 +23,7 @@ def design_changed(root: bpy.types.Object) -> None:
     if not flower.is_flower(root):
         return
     settings = flower.settings(root)
+    flower.scene_of(root).voxelastica_shown = root.name
     try:
         found, hint = _computed(root)
     except LibraryMissing as error:

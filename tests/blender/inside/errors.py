@@ -126,6 +126,17 @@ assert len(root.data.vertices) == 6 * 201 * 17
 
 # Without a flower operators say so.
 host.empty()
-for name in ("update", "export", "verify", "animate", "unanimate", "cancel", "keep_size", "use_mesh", "preset_apply"):
+for name in (
+    "remove",
+    "update",
+    "export",
+    "verify",
+    "animate",
+    "unanimate",
+    "cancel",
+    "keep_size",
+    "use_mesh",
+    "preset_apply",
+):
     assert not getattr(bpy.ops.voxelastica, name).poll(), name
 host.done()

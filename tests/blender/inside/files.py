@@ -132,6 +132,13 @@ for linked in (False, True):
     assert len(copy.data.vertices) == 5 * 201 * 17 and np.array_equal(host.points(first), before)
     assert host.part(copy, "HUB") is not None
 
+# Deleting a flower takes its parts and their data, and nothing else.
+bpy.context.view_layer.objects.active = copy
+meshes = len(bpy.data.meshes)
+left = {o.name for o in bpy.data.objects} - {copy.name} - {child.name for child in copy.children}
+assert bpy.ops.voxelastica.remove() == {"FINISHED"}
+assert {o.name for o in bpy.data.objects} == left and len(bpy.data.meshes) < meshes
+
 # Presets of the user.
 bpy.context.view_layer.objects.active = third
 assert bpy.ops.voxelastica.preset_save(name="my points") == {"FINISHED"}
