@@ -8,9 +8,9 @@ from __future__ import annotations
 
 
 def _modules():
-    from .ui import operators, panels, preset_menu, results
+    from .ui import animating, changing, making, panels, preset_menu, results
 
-    return operators, results, preset_menu, panels
+    return making, changing, animating, results, preset_menu, panels
 
 
 def register() -> None:

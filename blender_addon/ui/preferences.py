@@ -8,7 +8,7 @@ from typing import Any
 import bpy
 from bpy.props import BoolProperty, IntProperty, StringProperty
 
-from .properties import relative_paths
+from .fields import relative_paths
 
 PACKAGE = __package__.rpartition(".")[0]
 

@@ -7,7 +7,7 @@ import bpy
 from bpy.props import StringProperty
 
 from ..logic import designs, library, presets
-from . import flower, operators, preview, properties
+from . import common, flower, form, preview
 
 
 def name_of(preset: str) -> str:
@@ -22,14 +22,14 @@ class VOXELASTICA_OT_preset_apply(bpy.types.Operator):
     bl_label = "Apply Voxelastica Preset"
     bl_options = {"REGISTER", "UNDO"}
 
-    preset: StringProperty(name="Preset", search=lambda self, context, text: list(operators.preset_files()))
+    preset: StringProperty(name="Preset", search=lambda self, context, text: list(common.preset_files()))
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return operators.has_flower(cls, context)
+        return common.has_flower(cls, context)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        files = operators.preset_files()
+        files = common.preset_files()
         try:
             if self.preset not in files:
                 raise ValueError(f"There is no preset {self.preset!r}; there are {', '.join(files)}")
@@ -38,7 +38,7 @@ class VOXELASTICA_OT_preset_apply(bpy.types.Operator):
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         root = flower.shown(context)
-        properties.assign(root.voxelastica, {"name": root.voxelastica.design_name} | design)
+        form.assign(root.voxelastica, {"name": root.voxelastica.design_name} | design)
         preview.design_changed(root)
         if root.voxelastica.problem:
             self.report({"WARNING"}, root.voxelastica.problem)
@@ -55,7 +55,7 @@ class VOXELASTICA_OT_preset_save(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        if not operators.has_flower(cls, context):
+        if not common.has_flower(cls, context):
             return False
         if not flower.shown(context).voxelastica.design:
             cls.poll_message_set("There is no design to keep yet: see the message in the panel")
@@ -70,7 +70,7 @@ class VOXELASTICA_OT_preset_save(bpy.types.Operator):
         try:
             if self.name in presets.bundled():
                 raise ValueError(f"{self.name!r} is a preset of the add-on: choose another name")
-            presets.save(operators.preset_folder(create=True), self.name, design)
+            presets.save(common.preset_folder(create=True), self.name, design)
         except (OSError, ValueError) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
@@ -85,12 +85,12 @@ class VOXELASTICA_OT_preset_remove(bpy.types.Operator):
     bl_label = "Remove Voxelastica Preset"
 
     preset: StringProperty(
-        name="Preset", search=lambda self, context, text: list(presets.saved(operators.preset_folder()))
+        name="Preset", search=lambda self, context, text: list(presets.saved(common.preset_folder()))
     )
 
     @classmethod
     def poll(cls, _context: bpy.types.Context) -> bool:
-        if not presets.saved(operators.preset_folder()):
+        if not presets.saved(common.preset_folder()):
             cls.poll_message_set("No preset was saved")
             return False
         return True
@@ -100,7 +100,7 @@ class VOXELASTICA_OT_preset_remove(bpy.types.Operator):
 
     def execute(self, _context: bpy.types.Context) -> set[str]:
         try:
-            presets.remove(operators.preset_folder(), self.preset)
+            presets.remove(common.preset_folder(), self.preset)
         except (KeyError, OSError) as error:
             self.report({"ERROR"}, f"The preset {self.preset!r} could not be removed: {error}")
             return {"CANCELLED"}
@@ -116,7 +116,7 @@ class VOXELASTICA_MT_presets(bpy.types.Menu):
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         layout.operator_context = "EXEC_DEFAULT"
-        mine = presets.saved(operators.preset_folder())
+        mine = presets.saved(common.preset_folder())
         for preset in presets.bundled() | mine:
             layout.operator("voxelastica.preset_apply", text=name_of(preset)).preset = preset
         layout.separator()
@@ -133,7 +133,7 @@ class VOXELASTICA_MT_new(bpy.types.Menu):
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
-        for preset in operators.preset_files():
+        for preset in common.preset_files():
             layout.operator("voxelastica.new", text=name_of(preset), icon="MESH_CIRCLE").preset = preset
         layout.separator()
         layout.operator("voxelastica.from_mesh", text="From Active Mesh", icon="MESH_UVSPHERE")

@@ -14,7 +14,8 @@ import numpy as np
 
 from ..logic import colours, designs, inputs, lines, surface, voxel_mesh
 from ..logic.library import LibraryMissing, api
-from . import animation, flower, legend, meshes, properties, target_mesh
+from . import animation, fields, flower, form, legend, meshes, target_mesh
+from .properties import known
 
 
 def design_changed(root: bpy.types.Object) -> None:
@@ -48,7 +49,7 @@ def _computed(root: bpy.types.Object) -> tuple[designs.Prepared, str]:
     settings = flower.settings(root)
     if settings.target.kind == "mesh" and settings.target_object is not None and _outdated(settings):
         target_mesh.take(root)
-    values = properties.values(settings)
+    values = form.values(settings)
     hint = ""
     if values["target.kind"] == "points":
         file = values.get("target.file")
@@ -64,7 +65,7 @@ def _computed(root: bpy.types.Object) -> tuple[designs.Prepared, str]:
         raise ValueError(
             "Choose a mesh: an object in the scene that is a surface of revolution, such as half a UV sphere."
         )
-    return designs.computed(inputs.assemble(values, properties.known())), hint
+    return designs.computed(inputs.assemble(values, known())), hint
 
 
 def _outdated(settings: Any) -> bool:
@@ -75,7 +76,7 @@ def _outdated(settings: Any) -> bool:
 def mesh_changed(root: bpy.types.Object) -> None:
     """Takes the meridian of the target object anew."""
     settings = flower.settings(root)
-    with properties.quiet():
+    with fields.quiet():
         settings.target.kind = "mesh"
     if settings.target_object is None and settings.meridian_kind == "mesh":
         design_changed(root)

@@ -1,11 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Property groups, made from the library's table of parameters."""
+"""Property groups of a flower, made from the library's table of parameters."""
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable
-from contextlib import contextmanager
 from typing import Any
 
 import bpy
@@ -14,25 +11,16 @@ from bpy.props import (
     CollectionProperty,
     EnumProperty,
     FloatProperty,
-    FloatVectorProperty,
     IntProperty,
-    IntVectorProperty,
     PointerProperty,
     StringProperty,
 )
 
 from ..logic import inputs, presets
 from ..logic.library import api
-from ..logic.parameters import Field, fields, title
+from ..logic.parameters import Field, fields
 from ..logic.surface import CHOICES as COLOURS
-
-#: Where sliders end when dragged; what may be typed is the table's.
-_SLIDERS = {"mm": (0.1, 500.0, 100), "MPa": (0.1, 10000.0, 100), "deg": (-180.0, 180.0, 100)}
-_HEMISPHERE_DEG = (-90.0, 90.0)
-_INT_MOST = 2**31 - 1
-_FLOAT_MOST = 3.4e38
-#: Item of an optional choice that leaves the key out.
-AUTOMATIC = "automatic"
+from .fields import VOXELASTICA_PG_number, VOXELASTICA_PG_phase, changed, drawn, properties_of, relative_paths
 
 PARTS = (
     ("NONE", "None", "Not made by Voxelastica"),
@@ -47,48 +35,12 @@ PARTS = (
 
 _classes: list[type] = []
 _fields: dict[str, Field] = {}
-_quiet = 0
 _phase_choices: list[tuple[str, str, str]] = []
-
-
-@contextmanager
-def quiet():
-    """Properties may be set inside without the preview following each."""
-    global _quiet
-    _quiet += 1
-    try:
-        yield
-    finally:
-        _quiet -= 1
 
 
 def known() -> dict[str, Field]:
     """The fields that the property groups were made from."""
     return _fields
-
-
-def _changed(self: Any, _context: Any) -> None:
-    if not _quiet:
-        from . import preview  # The preview needs these properties.
-
-        preview.design_changed(self.id_data)
-
-
-def _drawn(what: str) -> Callable[[Any, Any], None]:
-    def changed(self: Any, _context: Any) -> None:
-        if not _quiet:
-            from . import preview
-
-            getattr(preview, what)(self.id_data)
-
-    return changed
-
-
-def _materials(self: Any, _context: Any, _text: str) -> list[tuple[str, str]]:
-    custom = [(item.name, "custom") for item in self.id_data.voxelastica.materials.custom]
-    hidden = {name for name, _ in custom}
-    listed = [(m["name"], f"{m['modulus_mpa']:g} MPa") for m in api().materials() if m["name"] not in hidden]
-    return custom + listed
 
 
 def _phase_items(self: Any, _context: Any) -> list[tuple[str, str, str]]:
@@ -98,104 +50,8 @@ def _phase_items(self: Any, _context: Any) -> list[tuple[str, str, str]]:
     return _phase_choices
 
 
-def _number(field: Field, start: Any) -> Any:
-    low, high, step = _SLIDERS.get(field.unit, (0.0, 1.0, 1) if field.most and field.most <= 1 else (-1e3, 1e3, 10))
-    least = -_FLOAT_MOST if field.least is None else field.least
-    most = _FLOAT_MOST if field.most is None else field.most
-    if field.exclusive:
-        least = max(1e-6, least * (1 + 1e-6))
-    if start is None:
-        start = min(max(10.0 if field.unit in ("mm", "MPa") else 0.0, least), most)
-    return FloatProperty(
-        name=field.label,
-        description=field.description,
-        default=start,
-        min=least,
-        max=most,
-        soft_min=max(low, least),
-        soft_max=min(high, most),
-        step=step,
-        precision=3,
-        update=_changed,
-    )
-
-
-def _vector(field: Field, start: Any, make: Any, size: int) -> Any:
-    least = field.least if field.type == "integers" else 0.0
-    return make(
-        name=field.label,
-        description=field.description,
-        size=size,
-        default=start or [max(1, int(least or 1))] * size,
-        min=int(least) if field.type == "integers" else least,
-        update=_changed,
-    )
-
-
-def _choices(field: Field) -> list[tuple[str, str, str]]:
-    return [(choice, title(choice), field.description) for choice in field.choices]
-
-
-def _property(field: Field, start: Any) -> dict[str, Any]:
-    """The Blender properties of one key, by name."""
-    common = {"name": field.label, "description": field.description, "update": _changed}
-    made: dict[str, Any] = {}
-    if field.optional and field.type not in ("text", "path", "choice"):
-        made[f"use_{field.name}"] = BoolProperty(
-            name=f"Set {field.label}", description=f"{field.description}. Without it, the default", update=_changed
-        )
-    match field.type:
-        case "number":
-            made[field.name] = _number(field, start)
-        case "integer":
-            least, most = int(field.least or 0), min(int(field.most or _INT_MOST), _INT_MOST)
-            made[field.name] = IntProperty(
-                default=int(least if start is None else start), min=least, max=most, soft_max=min(most, 64), **common
-            )
-        case "choice" | "choice-or-vector":
-            items = _choices(field)
-            if field.optional:
-                items.insert(0, (AUTOMATIC, "Automatic", "Leave the choice to the library"))
-                start = start or AUTOMATIC
-            made[field.name] = EnumProperty(items=items, default=start or field.choices[0], **common)
-        case "choices":
-            made[field.name] = EnumProperty(
-                items=_choices(field), default=set(start or ()), options={"ENUM_FLAG"}, **common
-            )
-        case "path":
-            made[field.name] = StringProperty(
-                default=start or "", subtype="FILE_PATH", options=relative_paths(), **common
-            )
-        case "text":
-            made[field.name] = StringProperty(default=start or "", **common)
-        case "integers":
-            made[field.name] = _vector(field, start, IntVectorProperty, field.count)
-        case "numbers" if field.count:
-            made[field.name] = _vector(field, start, FloatVectorProperty, field.count)
-        case "numbers":
-            made[field.name] = CollectionProperty(
-                type=VOXELASTICA_PG_number, name=field.label, description=field.description
-            )
-        case _:
-            raise TypeError(f"{field.key}: the panel knows no fields of type {field.type!r}")
-    return made
-
-
-class VOXELASTICA_PG_number(bpy.types.PropertyGroup):
-    """One of a list of numbers."""
-
-    value: FloatProperty(name="Value", precision=3, step=100, update=_changed)
-
-
-class VOXELASTICA_PG_phase(bpy.types.PropertyGroup):
-    """One of the phases."""
-
-    material: StringProperty(
-        name="Material",
-        description="A material of the library, or one of the custom materials",
-        search=_materials,
-        update=_changed,
-    )
+def _is_mesh(_self: Any, candidate: bpy.types.Object) -> bool:
+    return candidate.type == "MESH" and candidate.voxelastica.part == "NONE"
 
 
 def _group(name: str, annotations: dict[str, Any], doc: str) -> type:
@@ -205,23 +61,13 @@ def _group(name: str, annotations: dict[str, Any], doc: str) -> type:
     return made
 
 
-def relative_paths() -> set[str]:
-    """What says that a path may start with //, in versions of Blender that want to be told."""
-    known_flag = "is_path_supports_blend_relative" in bpy.types.Property.bl_rna.properties
-    return {"PATH_SUPPORTS_BLEND_RELATIVE"} if known_flag else set()
-
-
-def _is_mesh(_self: Any, candidate: bpy.types.Object) -> bool:
-    return candidate.type == "MESH" and candidate.voxelastica.part == "NONE"
-
-
 def _settings(groups: dict[str, type]) -> dict[str, Any]:
     """Annotations of what an object stores."""
     field = _fields["name"]
     own: dict[str, Any] = {table.replace(".", "_"): PointerProperty(type=group) for table, group in groups.items()}
     own |= {
         "part": EnumProperty(name="Part", items=PARTS, options=set()),
-        "design_name": StringProperty(name=field.label, description=field.description, update=_changed),
+        "design_name": StringProperty(name=field.label, description=field.description, update=changed),
         "design": StringProperty(name="Design", description="The last design that could be computed, as JSON"),
         "exact": StringProperty(description="Numbers as they were read, where a property cannot hold all their digits"),
         "problem": StringProperty(name="Problem", description="Why the design as set could not be computed"),
@@ -236,7 +82,7 @@ def _settings(groups: dict[str, type]) -> dict[str, Any]:
             description="The mesh whose outer meridian is the target, with its modifiers and scale",
             type=bpy.types.Object,
             poll=_is_mesh,
-            update=_drawn("mesh_changed"),
+            update=drawn("mesh_changed"),
         ),
         "morph": FloatProperty(
             name="Morph",
@@ -245,13 +91,13 @@ def _settings(groups: dict[str, type]) -> dict[str, Any]:
             max=1.0,
             subtype="FACTOR",
             precision=3,
-            update=_drawn("morph_changed"),
+            update=drawn("morph_changed"),
         ),
         "colour_by": EnumProperty(
-            name="Colour", description="What colours show", items=COLOURS, update=_drawn("look_changed")
+            name="Colour", description="What colours show", items=COLOURS, update=drawn("look_changed")
         ),
         "show_voxels": BoolProperty(
-            name="Voxels", description="Show the voxels that the spokes are made of", update=_drawn("look_changed")
+            name="Voxels", description="Show the voxels that the spokes are made of", update=drawn("look_changed")
         ),
         "voxel_limit": IntProperty(
             name="Voxel Limit",
@@ -261,20 +107,20 @@ def _settings(groups: dict[str, type]) -> dict[str, Any]:
             soft_max=2_000_000,
             max=20_000_000,
             step=10_000,
-            update=_drawn("look_changed"),
+            update=drawn("look_changed"),
         ),
         "voxel_phase": EnumProperty(
             name="Show Phase",
             description="Whose voxels are shown; a hidden phase lets you look inside",
             items=_phase_items,
-            update=_drawn("look_changed"),
+            update=drawn("look_changed"),
         ),
         "voxels_note": StringProperty(name="Voxels Shown"),
         "show_target": BoolProperty(
-            name="Target", description="Show the target as a wire", default=True, update=_drawn("look_changed")
+            name="Target", description="Show the target as a wire", default=True, update=drawn("look_changed")
         ),
         "show_legend": BoolProperty(
-            name="Legend", description="Show what the colours mean", default=True, update=_drawn("look_changed")
+            name="Legend", description="Show what the colours mean", default=True, update=drawn("look_changed")
         ),
         "along": IntProperty(
             name="Quads Along",
@@ -282,7 +128,7 @@ def _settings(groups: dict[str, type]) -> dict[str, Any]:
             default=200,
             min=8,
             max=2000,
-            update=_drawn("look_changed"),
+            update=drawn("look_changed"),
         ),
         "across": IntProperty(
             name="Quads Across",
@@ -291,7 +137,7 @@ def _settings(groups: dict[str, type]) -> dict[str, Any]:
             min=2,
             max=200,
             step=2,
-            update=_drawn("look_changed"),
+            update=drawn("look_changed"),
         ),
         "states": IntProperty(name="States", description="Shape keys that the animation blends; 0: not animated"),
         "animation_note": StringProperty(name="Animation"),
@@ -324,7 +170,7 @@ def _settings(groups: dict[str, type]) -> dict[str, Any]:
             name="Solver's Mid-Line",
             description="Lay the solver's mid-line over the target",
             default=True,
-            update=_drawn("look_changed"),
+            update=drawn("look_changed"),
         ),
     }
     return own
@@ -342,7 +188,7 @@ def register() -> None:
     start |= {f"materials.custom.{name}": value for name, value in api().materials()[0].items() if name != "name"}
     for key, field in _fields.items():
         if field.table:
-            own = _property(field, start.get(key, field.default))
+            own = properties_of(field, start.get(key, field.default))
             tables.setdefault(field.table, {}).update(own)
     custom = _group("material", tables.pop("materials.custom"), "A custom material.")
     tables["materials"]["custom"] = CollectionProperty(type=custom, name="Custom Materials")
@@ -366,106 +212,3 @@ def unregister() -> None:
     while _classes:
         bpy.utils.unregister_class(_classes.pop())
     _fields.clear()
-
-
-def _value(group: Any, field: Field, exact: dict[str, float]) -> Any:
-    """The value of a key; None where it is left out."""
-    if field.optional and not getattr(group, f"use_{field.name}", True):
-        return None
-    value = getattr(group, field.name)
-    match field.type:
-        case "number":
-            return inputs.restored(value, exact.get(field.key))
-        case "integer":
-            precise = exact.get(field.key)
-            return precise if precise is not None and min(precise, _INT_MOST) == value else value
-        case "numbers" if field.count:
-            return [inputs.shortest(x) for x in value]
-        case "numbers":
-            return [inputs.restored(item.value, exact.get(f"{field.key}.{i}")) for i, item in enumerate(value)]
-        case "integers":
-            return list(value)
-        case "choices":
-            return [choice for choice in field.choices if choice in value]
-        case "choice":
-            return None if value == AUTOMATIC else value
-        case "path":
-            return bpy.path.abspath(value) if value else None
-    return value
-
-
-def values(settings: Any) -> dict[str, Any]:
-    """The form's values, see :mod:`..logic.inputs`."""
-    exact = json.loads(settings.exact or "{}")
-    found: dict[str, Any] = {}
-    for key, field in _fields.items():
-        if key == "name":
-            found[key] = settings.design_name
-        elif field.table != "materials.custom":
-            found[key] = _value(getattr(settings, field.table), field, exact)
-    found["materials.phases"] = [item.material for item in settings.materials.phases]
-    found["materials.custom"] = [
-        {
-            field.name: value
-            for field in _fields.values()
-            if field.table == "materials.custom" and (value := _value(item, field, {})) is not None
-        }
-        for item in settings.materials.custom
-    ]
-    if settings.meridian and settings.meridian_kind == settings.target.kind:
-        found["target.meridian"] = json.loads(settings.meridian)
-    return found
-
-
-def _set(group: Any, field: Field, value: Any, exact: dict[str, float]) -> None:
-    if field.optional and hasattr(group, f"use_{field.name}"):
-        setattr(group, f"use_{field.name}", value is not None)
-    if value is None:
-        if field.type == "choice":
-            setattr(group, field.name, AUTOMATIC)
-        return
-    match field.type:
-        case "number" | "integer":
-            exact[field.key] = value
-            setattr(group, field.name, min(value, _INT_MOST) if field.type == "integer" else value)
-        case "numbers" if not field.count:
-            numbers = getattr(group, field.name)
-            numbers.clear()
-            for i, number in enumerate(value):
-                numbers.add().value = number
-                exact[f"{field.key}.{i}"] = number
-        case "choices":
-            setattr(group, field.name, set(value))
-        case "choice-or-vector":
-            setattr(group, field.name, value if isinstance(value, str) else "auto")
-        case _:
-            setattr(group, field.name, value)
-
-
-def assign(settings: Any, design: dict[str, Any]) -> None:
-    """Puts a design into the form; the preview does not follow until it is told to."""
-    exact: dict[str, float] = {}
-    found = inputs.flatten(design, _fields)
-    with quiet():
-        for key, field in _fields.items():
-            if key == "name":
-                settings.design_name = found[key] or ""
-            elif field.table != "materials.custom":
-                _set(getattr(settings, field.table), field, found[key], exact)
-        if not settings.target.coefficients_deg:  # A hemisphere, for when the kind is changed to a polynomial.
-            for value in _HEMISPHERE_DEG:
-                settings.target.coefficients_deg.add().value = value
-        settings.materials.phases.clear()
-        for name in found["materials.phases"] or ():
-            settings.materials.phases.add().material = name
-        settings.materials.custom.clear()
-        for material in found["materials.custom"] or ():
-            item = settings.materials.custom.add()
-            for field in _fields.values():
-                if field.table == "materials.custom":
-                    _set(item, field, material.get(field.name), {})
-        meridian = found["target.meridian"]
-        settings.meridian = json.dumps(meridian) if meridian else ""
-        settings.meridian_kind = found["target.kind"] if meridian else ""
-        settings.meridian_axis = settings.target.axis
-        settings.exact = json.dumps(exact)

@@ -12,7 +12,7 @@ from bpy.props import StringProperty
 from ..logic import results
 from ..logic.job import Job
 from . import flower, jobs, preview
-from .operators import has_flower
+from .common import has_flower
 from .preferences import preferences
 
 

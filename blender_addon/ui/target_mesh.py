@@ -11,7 +11,7 @@ import numpy as np
 
 from ..logic import mesh_target
 from ..logic.library import api
-from . import flower, properties
+from . import fields, flower
 
 
 def measured(context: bpy.types.Context, source: bpy.types.Object) -> tuple[np.ndarray, np.ndarray]:
@@ -57,7 +57,7 @@ def take(root: bpy.types.Object) -> None:
     except (api().VoxelasticaError, ValueError) as error:
         problem = re.sub(r"^(design: )?target\.file = \S+: ", "", str(error))
         raise ValueError(f"{source.name}: {problem}") from error
-    with properties.quiet():
+    with fields.quiet():
         settings.target.kind = "mesh"
         settings.meridian = json.dumps(found.meridian)
         settings.meridian_kind, settings.meridian_axis = "mesh", settings.target.axis

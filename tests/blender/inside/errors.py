@@ -43,7 +43,7 @@ right()
 # Infeasible: the nose cone standing freely needs more contrast than these resins have.
 cone = host.module("logic.presets").read(host.module("logic.presets").bundled()["nose_cone"])
 cone.pop("thrust")
-host.module("ui.properties").assign(settings, {"name": "hemisphere"} | cone)
+host.module("ui.form").assign(settings, {"name": "hemisphere"} | cone)
 host.module("ui.preview").design_changed(root)
 wrong("contrast", "6.3")
 for operator in (bpy.ops.voxelastica.export, bpy.ops.voxelastica.verify):

@@ -76,7 +76,7 @@ angles = np.linspace(0, np.pi / 2, 60)
 csv.write_text("rho,z\n" + "\n".join(f"{50 * np.cos(a):.9g},{30 * np.sin(a):.9g}" for a in angles))
 third = host.new("hemisphere")
 third.name = "From points"
-with host.module("ui.properties").quiet():
+with host.module("ui.fields").quiet():
     third.voxelastica.target.file = str(csv)
 third.voxelastica.target.kind = "points"
 assert third.voxelastica.problem == "", third.voxelastica.problem

@@ -82,7 +82,7 @@ def close_all() -> None:
 def frame() -> None:
     """The shown flower in the middle of the view, without its outline."""
     _, area = view()
-    module("ui.operators").frame(area.spaces.active.region_3d, bpy.data.objects["Hemisphere"])
+    module("ui.making").frame(area.spaces.active.region_3d, bpy.data.objects["Hemisphere"])
     for chosen in bpy.context.selected_objects:
         chosen.select_set(False)
 
