@@ -13,7 +13,7 @@ import bpy
 import numpy as np
 
 from ..logic import colours, designs, inputs, lines, surface, voxel_mesh
-from ..logic.library import LibraryMissing, api
+from ..logic.library import api
 from . import animation, fields, flower, form, legend, meshes, target_mesh
 from .properties import known
 
@@ -27,21 +27,16 @@ def design_changed(root: bpy.types.Object) -> None:
     flower.scene_of(root).voxelastica_shown = root.name
     try:
         found, hint = _computed(root)
-    except LibraryMissing as error:
-        settings.problem = str(error)
-    except Exception as error:  # noqa: BLE001 - a slider must never raise; the panel shows whatever went wrong
-        if not isinstance(error, (api().VoxelasticaError, ValueError, OSError)):
-            raise
+    except (api().VoxelasticaError, ValueError, OSError) as error:
         settings.problem = str(error).removeprefix("design: ")
         return
-    else:
-        settings.problem = ""
-        settings.hint = " ".join([hint, *found.design.warnings]).strip()
-        settings.design = found.text
-        if settings.target.kind == "points" and not hint:
-            settings.meridian = json.dumps(found.input["target"]["meridian"])
-            settings.meridian_kind = "points"
-        look_changed(root)
+    settings.problem = ""
+    settings.hint = " ".join([hint, *found.design.warnings]).strip()
+    settings.design = found.text
+    if settings.target.kind == "points" and not hint:
+        settings.meridian = json.dumps(found.input["target"]["meridian"])
+        settings.meridian_kind = "points"
+    look_changed(root)
 
 
 def _computed(root: bpy.types.Object) -> tuple[designs.Prepared, str]:
