@@ -89,6 +89,29 @@ assert bpy.ops.voxelastica.use_mesh() == {"FINISHED"}
 without = host.design(root).summary["height_mm"] / host.design(root).summary["rim_radius_mm"]
 assert abs(with_modifiers / without - 1) > 0.03, (with_modifiers, without)
 
+# A profile that only a modifier turns into a surface, about the object's own y axis, mirrored and rotated.
+host.empty()
+angles = np.linspace(0, np.pi / 2, 40)
+profile = bpy.data.meshes.new("profile")
+profile.from_pydata([(0.05 * np.cos(a), 0.03 * np.sin(a), 0.0) for a in angles], [(i, i + 1) for i in range(39)], [])
+lathe = bpy.data.objects.new("lathe", profile)
+bpy.context.collection.objects.link(lathe)
+screw = lathe.modifiers.new("Screw", "SCREW")
+screw.axis, screw.steps, screw.render_steps, screw.use_merge_vertices = "Y", 48, 48, True
+lathe.scale, lathe.rotation_euler = (-1, 1, 1), (1.0, 0.3, -0.7)
+bpy.context.view_layer.objects.active = lathe
+bpy.context.view_layer.update()
+assert bpy.ops.voxelastica.from_mesh() == {"FINISHED"}
+root = bpy.context.object
+for axis in ("y", "auto"):
+    root.voxelastica.target.axis = axis
+    assert root.voxelastica.problem == "", root.voxelastica.problem
+    assert off(root, 5.0, 3.0) < 0.5, off(root, 5.0, 3.0)
+root.voxelastica.target.axis = "x"
+assert root.voxelastica.problem.startswith("lathe: "), root.voxelastica.problem
+root.voxelastica.target.axis = "auto"
+assert root.voxelastica.problem == ""
+
 # A parent's uneven scale and a scene in centimetres.
 host.empty()
 scene = bpy.context.scene
