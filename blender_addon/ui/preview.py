@@ -14,6 +14,7 @@ import numpy as np
 
 from ..logic import colours, designs, inputs, lines, surface, voxel_mesh
 from ..logic.library import api
+from ..logic.messages import said
 from . import animation, fields, flower, form, legend, meshes, target_mesh
 from .properties import known
 
@@ -28,7 +29,7 @@ def design_changed(root: bpy.types.Object) -> None:
     try:
         found, hint = _computed(root)
     except (api().VoxelasticaError, ValueError, OSError) as error:
-        settings.problem = str(error).removeprefix("design: ")
+        settings.problem = said(error)
         return
     settings.problem = ""
     settings.hint = " ".join([hint, *found.design.warnings]).strip()

@@ -11,6 +11,7 @@ from bpy.props import StringProperty
 
 from ..logic import results
 from ..logic.job import Job
+from ..logic.messages import said
 from . import flower, jobs, preview
 from .common import has_flower
 from .preferences import preferences
@@ -36,7 +37,7 @@ def _failed(job: Job, what: str) -> str:
         return ""
     if job.cancelled:
         return f"{what} was cancelled"
-    return f"{what} failed: {str(job.error).removeprefix('design: ')}"
+    return f"{what} failed: {said(job.error)}"
 
 
 class VOXELASTICA_OT_export(bpy.types.Operator):

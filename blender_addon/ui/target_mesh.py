@@ -11,6 +11,7 @@ import numpy as np
 
 from ..logic import mesh_target
 from ..logic.library import api
+from ..logic.messages import said
 from . import fields, flower
 
 
@@ -55,7 +56,7 @@ def take(root: bpy.types.Object) -> None:
     try:
         found = mesh_target.extract(vertices, triangles, settings.target.axis, share)
     except (api().VoxelasticaError, ValueError) as error:
-        problem = re.sub(r"^(design: )?target\.file = \S+: ", "", str(error))
+        problem = re.sub(r"^target\.file = \S+: ", "", said(error))
         raise ValueError(f"{source.name}: {problem}") from error
     with fields.quiet():
         settings.target.kind = "mesh"

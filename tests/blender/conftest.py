@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -72,6 +73,24 @@ def blender(request: pytest.FixtureRequest, addon_zip: Path, tmp_path: Path) -> 
         return said
 
     return run
+
+
+@pytest.fixture
+def disks(tmp_path: Path) -> Iterator[tuple[Path, Path]]:
+    """A read-only file system and a very small one; root is needed to mount them."""
+    places = (tmp_path / "read-only", tmp_path / "full")
+    mounted = []
+    try:
+        for place, options in zip(places, ("ro", "size=300k"), strict=True):
+            place.mkdir()
+            mount = ["mount", "-t", "tmpfs", "-o", options, "tmpfs", str(place)]
+            if shutil.which("mount") is None or subprocess.run(mount, check=False, capture_output=True).returncode:
+                pytest.skip("a file system cannot be mounted here")
+            mounted.append(place)
+        yield places
+    finally:
+        for place in mounted:
+            subprocess.run(["umount", str(place)], check=False)
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:

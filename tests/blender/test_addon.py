@@ -74,5 +74,9 @@ def test_without_the_library(blender: Blender, tmp_path: Path) -> None:
         blender("no_library.py", stage, tmp_path / "kept.blend")
 
 
+def test_disks_that_cannot_be_written_to(blender: Blender, disks: tuple[Path, Path]) -> None:
+    blender("disks.py", *disks)
+
+
 def test_workbench_draws_it(blender: Blender) -> None:
     blender("render.py")

@@ -12,7 +12,20 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "blender_addon"), str(ROOT / "ffi" / "python")]
 
-from logic import colours, inputs, job, library, lines, mesh_target, parameters, presets, results, states, voxel_mesh  # noqa: E402
+from logic import (  # noqa: E402
+    colours,
+    inputs,
+    job,
+    library,
+    lines,
+    mesh_target,
+    messages,
+    parameters,
+    presets,
+    results,
+    states,
+    voxel_mesh,
+)
 
 
 @pytest.fixture(scope="module")
@@ -144,6 +157,19 @@ def test_results_go_where_a_user_expects() -> None:
         results.destination("//", "dome", saved=False)
     with pytest.raises(ValueError, match="Choose a folder"):
         results.destination("", "dome", saved=True)
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("design: voxels.size_mm = 3: too large", "voxels.size_mm = 3: too large"),
+        ("/x: no permission; choose another folder with -o", "/x: no permission; choose another folder"),
+        ("use larger voxels, or insist with --yes", "use larger voxels"),
+        ("install it or name it with --ccx PATH", "install it or name it in the add-on's preferences"),
+    ],
+)
+def test_messages_do_not_speak_of_the_command_line(text: str, shown: str) -> None:
+    assert messages.said(ValueError(text)) == shown
 
 
 def test_presets_are_files_that_a_user_keeps(tmp_path: Path) -> None:
