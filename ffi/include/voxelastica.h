@@ -910,6 +910,25 @@ voxelastica_status voxelastica_design_verify(const voxelastica_design *design,
                                              voxelastica_text **json,
                                              voxelastica_error **error);
 
+// Solves one spoke with CalculiX and compares its mid-line with the target: `voxelastica_design_verify` with another solver.
+// `ccx` is the program, a path or a name that is looked up on `PATH` (empty: `ccx`). The deck and the solver's files are
+// written into `folder`, which is the caller's to remove. The design must have the model's deck (`decks.write`) for CalculiX
+// (`decks.solvers`). Cancelling ends the solver.
+//
+// # Safety
+// `ccx` and `folder` are null or point to as many bytes as their lengths say; `progress` may be called with `user` on this
+// thread during the call; `json` and `error` are null or writable.
+voxelastica_status voxelastica_design_verify_ccx(const voxelastica_design *design,
+                                                 int32_t model,
+                                                 const char *ccx,
+                                                 size_t ccx_length,
+                                                 const char *folder,
+                                                 size_t folder_length,
+                                                 voxelastica_progress progress,
+                                                 void *user,
+                                                 voxelastica_text **json,
+                                                 voxelastica_error **error);
+
 // Corrects a design's modulus by what its voxels really do, at most `iterations` times (1 to 50), and gives the best design
 // found: a new one, to be freed by `voxelastica_design_free`. Its summary holds the error before and after. `progress` may
 // be null and is told thousandths.

@@ -1,18 +1,22 @@
-//! Solving a design's strip with the finite elements inside the library, and correcting the design by what they find.
+//! Solving a design's strip with the finite elements inside the library or with CalculiX, and correcting the design by what
+//! they find.
 
-use std::ffi::c_void;
+use std::ffi::{c_char, c_void};
+use std::path::{Path, PathBuf};
 
 use voxelastica_core::refine::refine;
 use voxelastica_core::results::verification::Model;
 use voxelastica_core::results::{EmbeddedOptions, Verification, verify_embedded};
+use voxelastica_core::solver::ccx::{Ccx, Status as CcxStatus};
 use voxelastica_core::{Design, Limits};
 
-use crate::arguments::{Out, within};
+use crate::arguments::{Out, path, within};
 use crate::boundary::enter;
 use crate::design::DesignObject;
 use crate::error::ErrorObject;
 use crate::failure::Failure;
 use crate::input::to_json;
+use crate::outputs::{Output, write};
 use crate::progress::{ProgressCallback, Watch, with_callback};
 use crate::registry::{find, keep};
 use crate::status::Status;
@@ -52,6 +56,30 @@ pub fn verify(design: &Design, model: Model, watch: &Watch) -> Result<Verificati
     Ok(verify_embedded(design, &options, &watch.shares())?.verification)
 }
 
+/// Writes a design's deck into a folder and solves it there with CalculiX while being watched.
+///
+/// # Errors
+/// A design without that deck for CalculiX, a solver that is missing or fails, what could not be written, cancellation.
+pub fn verify_ccx(
+    design: &Design,
+    model: Model,
+    folder: &Path,
+    executable: PathBuf,
+    watch: &Watch,
+) -> Result<Verification, Failure> {
+    let ccx = Ccx { executable, ..Ccx::default() };
+    // A missing program is said before a large deck is written.
+    ccx.version()?;
+    let deck = match model {
+        Model::Voxel => Output::VoxelSolid,
+        Model::Graded => Output::GradedSolid,
+    };
+    write(design, folder, deck as u32, false, watch)?;
+    let shares = watch.shares();
+    let progress = |status: CcxStatus| shares(status.share);
+    Ok(voxelastica_core::results::verify(design, folder, model, &ccx, folder, &progress)?)
+}
+
 /// Corrects a design while being watched.
 ///
 /// # Errors
@@ -84,6 +112,47 @@ pub unsafe extern "C" fn voxelastica_design_verify(
             let model = self::model(model)?;
             let found = with_callback(progress, user, |watch| verify(&design.design, model, watch))?;
             out.set(keep(Text::new(&to_json(&found)?)));
+            Ok(())
+        })
+    }
+}
+
+/// Solves one spoke with CalculiX and compares its mid-line with the target: `voxelastica_design_verify` with another solver.
+/// `ccx` is the program, a path or a name that is looked up on `PATH` (empty: `ccx`). The deck and the solver's files are
+/// written into `folder`, which is the caller's to remove. The design must have the model's deck (`decks.write`) for CalculiX
+/// (`decks.solvers`). Cancelling ends the solver.
+///
+/// # Safety
+/// `ccx` and `folder` are null or point to as many bytes as their lengths say; `progress` may be called with `user` on this
+/// thread during the call; `json` and `error` are null or writable.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn voxelastica_design_verify_ccx(
+    design: *const DesignObject,
+    model: i32,
+    ccx: *const c_char,
+    ccx_length: usize,
+    folder: *const c_char,
+    folder_length: usize,
+    progress: ProgressCallback,
+    user: *mut c_void,
+    json: *mut *mut Text,
+    error: *mut *mut ErrorObject,
+) -> Status {
+    // SAFETY: by this function's contract.
+    unsafe {
+        enter(error, || {
+            let (design, out) = (find(design)?, Out::new("json", json)?);
+            let model = self::model(model)?;
+            let program = match path("ccx", ccx, ccx_length)? {
+                program if program.as_os_str().is_empty() => PathBuf::from("ccx"),
+                program => program,
+            };
+            let folder = path("folder", folder, folder_length)?;
+            if folder.as_os_str().is_empty() {
+                return Err(Failure::range("folder", "\"\"", "the path of a folder"));
+            }
+            let work = |watch: &Watch| verify_ccx(&design.design, model, &folder, program, watch);
+            out.set(keep(Text::new(&to_json(&with_callback(progress, user, work)?)?)));
             Ok(())
         })
     }

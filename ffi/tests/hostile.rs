@@ -98,6 +98,8 @@ const CALLS: &[(&str, Call)] = calls! {
         handle(s), s.text.0, s.text.1, 255, false, None, ptr::null_mut(), s.out.cast(), s.error));
     voxelastica_design_verify(s) Some(voxelastica_design_verify(
         handle(s), 0, None, ptr::null_mut(), s.out.cast(), s.error));
+    voxelastica_design_verify_ccx(s) Some(voxelastica_design_verify_ccx(
+        handle(s), 0, s.text.0, s.text.1, s.text.0, s.text.1, None, ptr::null_mut(), s.out.cast(), s.error));
     voxelastica_design_refine(s) Some(voxelastica_design_refine(
         handle(s), 1, false, None, ptr::null_mut(), s.out.cast(), s.error));
     voxelastica_design_input(s) Some(voxelastica_design_input(handle(s), s.out.cast(), s.error));

@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import read_json
+from conftest import EXAMPLES, read_json
 
 from .conftest import PACKAGE, ROOT
 
@@ -205,6 +205,43 @@ def test_a_design_is_solved_corrected_and_made(tmp_path: Path) -> None:
         design.fabricate(tmp_path, ["paper"])
     with pytest.raises(voxelastica.VoxelasticaError) as caught:
         design.verify(progress=lambda done, total: False)
+    assert caught.value.code == caught.value.CANCELLED
+
+
+def test_input_is_completed_without_a_design(tmp_path: Path) -> None:
+    import voxelastica
+
+    keys = {
+        "target": {"kind": "mesh", "file": "dome.obj"},
+        "strips": {"count": 8, "length_mm": 100.0, "hub_radius_mm": 0.5, "thickness_mm": 2.0},
+        "materials": {"phases": ["FLX9070", "FLX9095"]},
+        "voxels": {"size_mm": 1.0},
+    }
+    # Infeasible standing freely, but the meridian is there.
+    found = voxelastica.complete(keys, folder=EXAMPLES)
+    assert found["voxels"]["pattern"] == "random" and found["target"]["meridian"][-1][0] == pytest.approx(0.5)
+    with pytest.raises(voxelastica.VoxelasticaError) as caught:
+        voxelastica.Design.from_dict(found)
+    assert caught.value.code == caught.value.INFEASIBLE
+    with pytest.raises(voxelastica.VoxelasticaError, match="voxels.size_m"):
+        voxelastica.complete({**keys, "voxels": {"size_m": 1.0}}, folder=EXAMPLES)
+
+
+def test_calculix_solves_a_design(ccx: str) -> None:
+    import voxelastica
+
+    small = SMALL + "[decks]\ncalculix_graded_elements = [24, 4, 2]\n"
+    design = voxelastica.Design.from_toml(small)
+    found = design.verify_ccx(ccx=ccx)
+    assert found["solver"]["name"] == "CalculiX" and found["model"] == "graded" and found["max_error_percent"] < 2
+    with pytest.raises(voxelastica.VoxelasticaError, match="/nowhere/ccx") as caught:
+        design.verify_ccx(ccx="/nowhere/ccx")
+    assert caught.value.code == caught.value.SOLVER
+    without = voxelastica.Design.from_toml(SMALL + '[decks]\nsolvers = ["abaqus"]\n')
+    with pytest.raises(voxelastica.VoxelasticaError, match="decks.solvers"):
+        without.verify_ccx(ccx=ccx)
+    with pytest.raises(voxelastica.VoxelasticaError) as caught:
+        design.verify_ccx(ccx=ccx, progress=lambda done, total: False)
     assert caught.value.code == caught.value.CANCELLED
 
 

@@ -27,7 +27,7 @@ they keep what they belong to alive.
 """
 
 from ._call import Progress, VoxelasticaError
-from ._design import FABRICATION, OUTPUTS, Design, Profile, Voxels
+from ._design import FABRICATION, OUTPUTS, Design, Profile, Voxels, complete
 from ._geometry import Flower, Mesh, MorphPath, Strip
 from ._library import LIBRARY as _LIBRARY
 from ._lists import materials, parameters, schema
@@ -47,6 +47,7 @@ __all__ = [
     "VoxelasticaError",
     "Voxels",
     "__version__",
+    "complete",
     "materials",
     "parameters",
     "schema",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes as c
 import json
 import os
+import tempfile
 from array import array
 from collections.abc import Iterable, Mapping
 from enum import IntEnum
@@ -342,6 +343,21 @@ class Design:
         with Watcher(progress) as callback:
             return json.loads(text("design_verify", self._handle.number, number, callback, None))
 
+    def verify_ccx(
+        self,
+        model: Literal["voxel", "graded"] = "graded",
+        *,
+        ccx: str | os.PathLike[str] = "ccx",
+        progress: Progress | None = None,
+    ) -> dict[str, Any]:
+        """Solves one spoke with CalculiX, in a folder that is removed again: what ``verification.json`` holds. ``ccx`` is
+        the program, a path or a name that is looked up. The design must have the model's deck (``decks.write``) for
+        CalculiX (``decks.solvers``); ``progress`` is told the deck's bytes, then thousandths."""
+        number = _choice(model, _MODELS, "model")
+        with tempfile.TemporaryDirectory(prefix="voxelastica-") as folder, Watcher(progress) as callback:
+            arguments = (number, *encoded(os.fspath(ccx)), *encoded(folder), callback, None)
+            return json.loads(text("design_verify_ccx", self._handle.number, *arguments))
+
     def refine(self, iterations: int = 4, *, allow_large: bool = False, progress: Progress | None = None) -> Design:
         """The design corrected by what its voxels really do, at most ``iterations`` times: the best one found. Its
         ``summary["refinement"]`` has the error before and after."""
@@ -421,3 +437,12 @@ def _parse(
     texts = (*encoded(source), *encoded(file), *encoded(os.fspath(folder)))
     with Watcher(progress) as callback:
         return make("input", f"input_parse_{kind}", *texts, callback, None)
+
+
+def complete(
+    keys: Mapping[str, Any], *, folder: str | os.PathLike[str] = "", progress: Progress | None = None
+) -> dict[str, Any]:
+    """A dictionary with the TOML's keys, checked, with all defaults filled in and the meridian taken from the file it names,
+    without computing the design: it may be infeasible. Paths are relative to ``folder``."""
+    source = _parse("json", json.dumps(keys), "", folder, progress)
+    return json.loads(text("input_json", source.number))

@@ -122,6 +122,7 @@ DECLARATIONS: dict[str, tuple[Any, list[Any]]] = {
     "design_hub": (c.c_int32, [_HANDLE, c.c_int32, c.c_double, *_BUFFER, _ERROR]),
     "design_write": (c.c_int32, [_HANDLE, *_TEXT, c.c_uint32, c.c_bool, *_PROGRESS, _OUT_HANDLE, _ERROR]),
     "design_verify": (c.c_int32, [_HANDLE, c.c_int32, *_PROGRESS, _OUT_HANDLE, _ERROR]),
+    "design_verify_ccx": (c.c_int32, [_HANDLE, c.c_int32, *_TEXT, *_TEXT, *_PROGRESS, _OUT_HANDLE, _ERROR]),
     "design_refine": (c.c_int32, [_HANDLE, c.c_size_t, c.c_bool, *_PROGRESS, _OUT_HANDLE, _ERROR]),
     "design_input": (c.c_int32, [_HANDLE, _OUT_HANDLE, _ERROR]),
     "design_conduct": (

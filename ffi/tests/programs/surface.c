@@ -387,6 +387,9 @@ static void analyses(const char *folder) {
   status = voxelastica_design_verify(design, 0, stop, &told, &text, &error);
   failed(status, VOXELASTICA_STATUS_CANCELLED, error, "", "cancelled");
 
+  status = voxelastica_design_verify_ccx(design, 1, TEXT("no such solver"), TEXT("unused"), NULL, NULL, &text, &error);
+  failed(status, VOXELASTICA_STATUS_SOLVER, error, "", "no such solver");
+
   CHECK(voxelastica_design_refine(design, 1, false, go_on, &told, &refined, &error) == VOXELASTICA_STATUS_OK);
   CHECK(voxelastica_design_input(refined, &again, &error) == VOXELASTICA_STATUS_OK);
   CHECK(voxelastica_input_json(again, &text, &error) == VOXELASTICA_STATUS_OK);

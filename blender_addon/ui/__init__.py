@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The add-on in Blender: properties, preview, operators, panels."""

@@ -1,0 +1,1 @@
+"""The Blender add-on in Blender as a Python module."""
