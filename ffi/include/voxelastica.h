@@ -19,7 +19,7 @@
 #include <stdint.h>
 
 // Version of the interface that this header describes.
-#define VOXELASTICA_ABI_VERSION 2
+#define VOXELASTICA_ABI_VERSION 3
 
 // What a call returns. Codes are never reused; those below 6 and 130 are the command line's exit codes.
 enum voxelastica_status
@@ -386,6 +386,8 @@ typedef struct {
   double specific_heat_j_kgk;
   // Electrical conductivity, S/m.
   double electrical_conductivity_s_m;
+  // Permittivity over that of the vacuum.
+  double relative_permittivity;
   // Largest principal strain the material stands.
   double max_strain;
 } voxelastica_material;
@@ -819,8 +821,8 @@ voxelastica_status voxelastica_mesh_free(voxelastica_mesh *mesh);
 
 // Writes outputs of the kinds `kinds` (`voxelastica_output`, combined) into a folder, which is made where it does not
 // exist. Either all files get their names or none. Of the decks those are written that the design has (`decks.write`,
-// `decks.solvers`). `progress` may be null and is told bytes. `files` (null: not wanted) becomes a JSON list of the files'
-// paths relative to the folder. More than the free disk is refused unless `allow_large`.
+// `decks.solvers`). `progress` may be null and is told bytes (of print files, voxels). `files` (null: not
+// wanted) becomes a JSON list of the files' paths relative to the folder. More than the free disk is refused unless `allow_large`.
 //
 // # Safety
 // `folder` is null or points to `folder_length` bytes; `progress` may be called with `user` on this thread during the
