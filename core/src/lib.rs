@@ -58,6 +58,7 @@ pub mod fem;
 pub mod flower;
 pub mod input;
 pub mod materials;
+mod memory;
 pub mod mesh;
 pub mod micromechanics;
 pub mod modulus_field;

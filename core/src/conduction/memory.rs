@@ -2,6 +2,7 @@
 
 use super::ConductionError;
 use super::mesh::BrickMesh;
+use crate::memory::available_bytes;
 
 /// Bytes a node on the finest level: vectors of conjugate gradients and of the smoother, diagonal, boundary.
 const PER_NODE: u64 = 150;
@@ -19,15 +20,6 @@ pub fn estimated_bytes(cells: [usize; 3]) -> u64 {
     BASE.saturating_add(product(1).saturating_mul(PER_NODE)).saturating_add(product(0).saturating_mul(PER_CELL))
 }
 
-/// Bytes of memory that are free, where the system says.
-#[must_use]
-pub fn free_bytes() -> Option<u64> {
-    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
-    let line = text.lines().find_map(|l| l.strip_prefix("MemAvailable:"))?;
-    let kilobytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    Some(kilobytes.saturating_mul(1024))
-}
-
 /// Refuses a mesh that needs more than `limit`, or than what is free.
 ///
 /// # Errors
@@ -41,7 +33,7 @@ pub fn require(mesh: &BrickMesh, limit: Option<u64>) -> Result<(), ConductionErr
 /// # Errors
 /// [`ConductionError::Memory`].
 pub fn require_cells(cells: [usize; 3], limit: Option<u64>) -> Result<(), ConductionError> {
-    let limit = limit.unwrap_or_else(|| free_bytes().unwrap_or(UNKNOWN));
+    let limit = limit.unwrap_or_else(|| available_bytes().unwrap_or(UNKNOWN));
     let needed = estimated_bytes(cells);
     if needed <= limit {
         return Ok(());

@@ -1,8 +1,7 @@
-//! How much memory there is, and how much a solution takes.
-
-use std::fs;
+//! How much memory a solution takes.
 
 use super::FemError;
+use crate::memory::available_bytes;
 
 /// Share of the available memory that a solution may take.
 const SHARE: f64 = 0.8;
@@ -10,8 +9,7 @@ const SHARE: f64 = 0.8;
 /// Bytes that a solution may take by default: most of what is available; `None` where the system does not say.
 #[must_use]
 pub fn default_limit() -> Option<u64> {
-    let text = fs::read_to_string("/proc/meminfo").ok()?;
-    available(&text).map(|bytes| (SHARE * bytes as f64) as u64)
+    available_bytes().map(|bytes| (SHARE * bytes as f64) as u64)
 }
 
 /// Bytes of the sparsity and of the tangent, a node.
@@ -36,15 +34,9 @@ pub fn require(elements: u64, layers: usize, limit: Option<u64>) -> Result<(), F
     }
 }
 
-fn available(text: &str) -> Option<u64> {
-    let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
-    let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    kibibytes.checked_mul(1024)
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{available, require};
+    use super::require;
 
     #[test]
     fn a_strip_far_too_large_is_refused_by_its_size() {
@@ -53,13 +45,5 @@ mod tests {
         assert!(require(67_000, 4, Some(900_000_000)).is_err());
         assert!(require(200_000_000, 20, Some(64_000_000_000)).is_err());
         assert!(require(u64::MAX, 1, None).is_ok());
-    }
-
-    #[test]
-    fn the_kernel_s_table_is_read() {
-        let text = "MemTotal:       24576000 kB\nMemFree:          1024 kB\nMemAvailable:   20000000 kB\n";
-        assert_eq!(available(text), Some(20_480_000_000));
-        assert_eq!(available("MemTotal: 1 kB\n"), None);
-        assert_eq!(available("MemAvailable: lots\n"), None);
     }
 }
