@@ -24,8 +24,10 @@ def deviation(shape: Callable[[float], np.ndarray], states: int) -> float:
 
 
 def enough(shape: Callable[[float], np.ndarray], limit: float) -> tuple[int, float]:
-    """The fewest states after the flat one whose blends stay within ``limit``, and how far off they are.
+    """The fewest states after the flat one whose blends stay within ``limit``, and how far off they are, mm.
 
+    :param shape: points, mm, at a fraction of the morph; (n, 3)
+    :param limit: largest distance from the true path, mm
     :raises ValueError: where :data:`MOST` states are not enough
     """
     states = 2

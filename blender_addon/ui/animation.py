@@ -21,14 +21,18 @@ def animate(root: bpy.types.Object, first: int, last: int, percent: float) -> No
     from . import preview
 
     settings = flower.settings(root)
-    clear(root)
-    limit = 0.01 * percent * settings.strips.length_mm / flower.unit_mm(flower.scene_of(root))
+    design = flower.prepared(root)
+    if design is None:
+        raise ValueError("the design that this flower stores cannot be read: update the flower first")
+    length, unit = design.input["strips"]["length_mm"], flower.unit_mm(flower.scene_of(root))
     count, worst = 0, 0.0
     for _, shape in preview.shapes(root):
-        found, off = blending.enough(shape, limit)
+        found, off = blending.enough(lambda fraction, shape=shape: unit * shape(fraction), 0.01 * percent * length)
         count, worst = max(count, found), max(worst, off)
+    # An earlier animation goes only once there is another.
+    clear(root)
     settings.states = count
-    off = 100.0 * worst * flower.unit_mm(flower.scene_of(root)) / settings.strips.length_mm
+    off = 100.0 * worst / length
     settings.animation_note = f"{count + 1} states; between them at most {off:.2g} % of the length off the true path"
     rebuild(root)
     settings.morph = 0.0

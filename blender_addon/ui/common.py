@@ -42,7 +42,7 @@ def has_flower(cls: Any, context: bpy.types.Context) -> bool:
     if root.library or root.override_library:
         cls.poll_message_set("This flower is linked from another file: make it local first")
         return False
-    if root.mode == "EDIT":
-        cls.poll_message_set("Leave Edit Mode first")
+    if mode := flower.busy_mode(root):
+        cls.poll_message_set(f"Leave {mode} first")
         return False
     return True

@@ -65,6 +65,15 @@ def parts(root: bpy.types.Object) -> Iterator[bpy.types.Object]:
     return (child for child in root.children if child.voxelastica.part != "NONE")
 
 
+def busy_mode(root: bpy.types.Object) -> str:
+    """The mode in which a flower or a part is worked on by hand, as *Edit Mode*; empty in Object Mode.
+
+    Meshes must not be replaced meanwhile.
+    """
+    modes = (found.mode for found in (root, *parts(root)) if found.mode != "OBJECT")
+    return next((f"{mode.replace('_', ' ').title()} Mode" for mode in modes), "")
+
+
 def unit_mm(scene: bpy.types.Scene) -> float:
     """Millimetres in one unit of a scene's coordinates."""
     return 1000.0 * scene.unit_settings.scale_length

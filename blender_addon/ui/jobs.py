@@ -51,10 +51,17 @@ def look() -> float | None:
         root = next((candidate for candidate in bpy.data.objects if candidate.session_uid == number), None)
         if root is not None and flower.is_flower(root):
             finish(root, job)
-            if not bpy.app.background:
-                bpy.ops.ed.undo_push(message=job.name)
+            _push_undo(job.name)
     _redraw()
     return _INTERVAL if _jobs else None
+
+
+def _push_undo(message: str) -> None:
+    """A step in the history of what a job changed; a timer need not have a window, which the step wants."""
+    for window in () if bpy.app.background else bpy.context.window_manager.windows:
+        with bpy.context.temp_override(window=window):
+            bpy.ops.ed.undo_push(message=message)
+        return
 
 
 def _redraw() -> None:

@@ -145,7 +145,10 @@ class VOXELASTICA_OT_import(bpy.types.Operator, ImportHelper):
     filter_glob: StringProperty(default="*.toml;*.json", options={"HIDDEN"})
 
     @classmethod
-    def poll(cls, _context: bpy.types.Context) -> bool:
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if context.mode != "OBJECT":
+            cls.poll_message_set("Leave the present mode for Object Mode first")
+            return False
         return ready(cls)
 
     def execute(self, context: bpy.types.Context) -> set[str]:

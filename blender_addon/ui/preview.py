@@ -131,8 +131,8 @@ def morph_changed(root: bpy.types.Object) -> None:
 def _writable(root: bpy.types.Object) -> bool:
     """Whether a flower's mesh may be replaced now."""
     settings = flower.settings(root)
-    if root.mode == "EDIT":
-        settings.problem = "Leave Edit Mode: the preview replaces the spokes' mesh."
+    if mode := flower.busy_mode(root):
+        settings.problem = f"Leave {mode}: the preview replaces the meshes of the flower."
         return False
     if root.data.users > 1:  # A linked duplicate shows a design of its own from now on.
         root.data = root.data.copy()

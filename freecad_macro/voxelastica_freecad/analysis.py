@@ -67,7 +67,7 @@ def bands(deck: Deck, count: int) -> list[list[int]]:
 
 
 def _outline(deck: Deck) -> dict[float, float]:
-    """Half the width of the mesh over x, and half its thickness at ``nan``."""
+    """Half the width of the mesh over x, mm."""
     nodes = deck.nodes()
     halves: dict[float, float] = {}
     for corners in deck.elements().values():

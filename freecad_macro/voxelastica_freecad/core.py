@@ -39,9 +39,9 @@ def build(settings: Settings, progress: Progress = lambda text: None) -> Built:
     Raises :class:`MacroError` or the library's error; the document is then as it was before.
     """
     settings.check()
-    folder = export.require_writable(settings.folder) if settings.export or settings.solve else None
     progress("reading the design")
     design = source.load(settings.design)
+    folder = export.require_writable(settings.folder) if settings.export or settings.solve else None
     document, is_new = _document(settings, design)
     name = f"Voxelastica {design.name}"
     before = {item.Name for item in document.Objects}

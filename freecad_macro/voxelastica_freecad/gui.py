@@ -12,7 +12,7 @@ from PySide import QtCore, QtGui
 
 from . import core
 from .library import PREFERENCES
-from .settings import BANDS, EXPORTS, MODELS, PARTS, PHASES, Settings
+from .settings import BANDS, EXPORTS, MODELS, PARTS, PHASES, MacroError, Settings
 
 _PART_LABELS = {
     "flat": "Flat flower",
@@ -178,7 +178,10 @@ class Panel:
     def _do_solve(self) -> None:
         from . import export, solve
 
-        folder = export.require_writable(self._folder.text().strip() or str(Path.cwd())) / "analysis"
+        place = self._folder.text().strip()
+        if not place:
+            raise MacroError("choose a folder for the solver's files")
+        folder = export.require_writable(place) / "analysis"
         self._say("CalculiX is running")
         self._built.solution = solve.solve(self._built.parts["analysis"]["analysis"], str(folder))
         self._tell(core.report(self._built))

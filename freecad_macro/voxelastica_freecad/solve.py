@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 import os
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -81,7 +82,8 @@ def solve(analysis: Any, folder: str, ccx: str = "") -> dict[str, Any]:
     tools.inp_file_name = str(path)
     if ccx:
         # FreeCAD's own settings would come first.
-        tools.ccx_binary, tools.ccx_binary_present = ccx, os.access(ccx, os.X_OK)
+        found = shutil.which(ccx)
+        tools.ccx_binary, tools.ccx_binary_present = found or ccx, found is not None
     else:
         tools.setup_ccx()
     if not tools.ccx_binary_present:

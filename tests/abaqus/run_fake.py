@@ -3,7 +3,7 @@
     python run_fake.py TABLE.json SCENARIO.json OUT.json
 
 The scenario: ``scripts`` (folder of the plug-in), ``replies`` to CAE's boxes and ``actions``, each ``{"do": "build" |
-"dialog" | "extract" | "plugin" | "occupy" | "script", ...}``. The result holds all calls, what was printed and what the
+"dialog" | "extract" | "plugin" | "occupy" | "names" | "script", ...}``. The result holds all calls, what was printed and what the
 database holds after every action.
 """
 
@@ -91,6 +91,11 @@ def act(world, action):
             dimensionality=world.constant("THREE_D"),
             type=world.constant("DEFORMABLE_BODY"),
         )._plain()
+    if do == "names":
+        from voxelastica_cae import design as designs, shell_flower, voxel_strip
+
+        module = voxel_strip if action["kind"] == "geometry" else shell_flower
+        return module.names(designs.read(action["design"]))
     if do == "plugin":
         return plugin(world, action)
     if do == "coarse":

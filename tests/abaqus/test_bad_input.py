@@ -144,6 +144,19 @@ def test_building_into_the_users_model_keeps_what_is_there(record: Recorder, des
     assert run.actions[-1]["after"]["Model-1"]["parts"] == ["MINE", "SPOKE"]
 
 
+@pytest.mark.parametrize("name", ["held", "odd"])
+@pytest.mark.parametrize("kind", ["geometry", "shell"])
+def test_no_name_is_taken_unasked(record: Recorder, designs: dict[str, Path], kind: str, name: str) -> None:
+    """CAE replaces what has the same name without a word: all that is made is looked up before."""
+    path = str(designs[name] / "design.json")
+    run = record(dialog(path, kind, "Model-1"), {"do": "names", "kind": kind, "design": path})
+    assert "error" not in run.actions[0]
+    before, after = (run.actions[0][when]["Model-1"] for when in ("before", "after"))
+    for repository in set(after) - {"features", "sketches"}:
+        made = set(after[repository]) - set(before[repository])
+        assert made == set(run.actions[1]["result"].get(repository, ())), repository
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

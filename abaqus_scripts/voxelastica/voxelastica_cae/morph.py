@@ -17,6 +17,10 @@ if TYPE_CHECKING:  # type comments only: ABAQUS has no such modules
 #: Name of the step, as in the decks.
 STEP_NAME = "MORPH"
 
+#: What names of output requests start with, and the one of fields.
+REQUEST = "VOXELASTICA-"
+FIELD_REQUEST = REQUEST + "FIELD"
+
 #: Nodes up to which every fifth increment is kept as a field; beyond, only the last one.
 _MANY_NODES = 25000
 
@@ -132,13 +136,13 @@ def outputs(model, sets, nodes, midline, references, variables=("S", "LE")):
     Reactions are asked for in the axes of the reference points' own systems.
     """
     model.FieldOutputRequest(
-        name="VOXELASTICA-FIELD",
+        name=FIELD_REQUEST,
         createStepName=STEP_NAME,
         variables=("U", "COORD") + tuple(variables),
         frequency=2000 if nodes > _MANY_NODES else 5,
     )
     model.HistoryOutputRequest(
-        name="VOXELASTICA-" + midline,
+        name=REQUEST + midline,
         createStepName=STEP_NAME,
         region=sets[midline],
         variables=("U1", "U2", "U3", "COOR1", "COOR2", "COOR3"),
@@ -147,7 +151,7 @@ def outputs(model, sets, nodes, midline, references, variables=("S", "LE")):
     components = [kind + axis for kind in ("U", "UR", "RF", "RM") for axis in "123"]
     for name in references:
         model.HistoryOutputRequest(
-            name="VOXELASTICA-" + name,
+            name=REQUEST + name,
             createStepName=STEP_NAME,
             region=sets[name],
             variables=tuple(components),

@@ -62,6 +62,10 @@ def names(design):
     sets = ["HUB", "HUB-PLATE", "RP-HUB", "RP-RIMS", "RP-HUBS"]
     for kind in ("MIDLINE", "RIM", "HUB", "RP-RIM", "RP-HUB", "SPOKE"):
         sets += ["%s-%d" % (kind, i) for i in spokes]
+    # The hub rises as a whole; all else is a spoke's own.
+    middle = [motion.amplitude for motion in design.motions if motion is design.hub_height] + ["HUB-HELD"]
+    own = [motion.amplitude for motion in design.motions if motion is not design.hub_height] + ["RIM-HELD", "HUB-HELD"]
+    points = ["%s-%d" % (name, i) for name in ("RP-RIM", "RP-HUB") for i in spokes] + ["RP-HUB"]
     return {
         "parts": [PART, HUB_PART],
         "materials": [GRADED, "HUB"],
@@ -71,6 +75,11 @@ def names(design):
         "analyticalFields": ["MODULUS-%d" % i for i in spokes],
         "instances": ["SPOKE-%d" % i for i in spokes] + ["HUB-PLATE-1"],
         "sets": sets,
+        "constraints": ["HUB"] + ["%s-%d" % (name, i) for name in ("RIM", "HUB", "HUB-HEIGHT") for i in spokes],
+        "boundaryConditions": middle + ["%s-%d" % (name, i) for name in own for i in spokes],
+        "predefinedFields": ["MODULUS-HUB"] + ["MODULUS-%d" % i for i in spokes],
+        "fieldOutputRequests": [morph.FIELD_REQUEST],
+        "historyOutputRequests": [morph.REQUEST + name for name in ["MIDLINE-1"] + points],
     }
 
 

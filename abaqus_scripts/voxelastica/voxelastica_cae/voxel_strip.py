@@ -49,6 +49,10 @@ def names(design):
         "amplitudes": [motion.amplitude for motion in design.motions],
         "instances": [INSTANCE],
         "sets": ["MIDLINE", "RIM", "HUB", "RP-RIM", "RP-HUB"],
+        "constraints": ["RIM", "HUB"],
+        "boundaryConditions": [motion.amplitude for motion in design.motions] + ["RIM-HELD", "HUB-HELD"],
+        "fieldOutputRequests": [morph.FIELD_REQUEST],
+        "historyOutputRequests": [morph.REQUEST + name for name in ("MIDLINE", "RP-RIM", "RP-HUB")],
     }
 
 
