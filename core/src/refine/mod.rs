@@ -38,7 +38,7 @@ const PATIENCE: usize = 3;
 /// Voxels up to which a step solves several promising strips, and how many of every kind of correction: whole voxels answer erratically, small strips are
 /// solved in a fraction of a second.
 const SMALL: usize = 5_000;
-const TRIALS: usize = 3;
+const TRIALS: usize = 2;
 
 /// A refined design.
 #[derive(Debug)]
