@@ -14,12 +14,13 @@
 //! curvature, the sensitivity is defined at inflections, where both vanish, and it knows that what is changed at one place
 //! moves the line of thrust everywhere. Voxels are whole, so steps of several lengths are weighed by what the elastica,
 //! corrected by what the solved strips taught, says of the voxels they lead to (`proposal.rs`); the most promising is solved,
-//! of small strips several. The best strip solved is kept.
+//! of small strips several. Where that brings nothing, small strips are solved with another modulus about one knot after the
+//! other. The best strip solved is kept.
 
 mod mapping;
 mod proposal;
 
-use proposal::Best;
+use proposal::{Best, Proposal};
 
 use crate::design::{Design, Limits};
 use crate::error::Error;
@@ -28,6 +29,7 @@ use crate::input::model::RefineInput;
 use crate::progress::Share;
 use crate::results::verification::Model;
 use crate::results::{EmbeddedOptions, EmbeddedVerification, verify_embedded};
+use crate::voxel::VoxelGrid;
 
 /// Factors of a correction, evenly spaced.
 const FACTORS: usize = 101;
@@ -35,8 +37,8 @@ const FACTORS: usize = 101;
 const WORTHWHILE: f64 = 0.95;
 /// Steps in a row that may fail to come closer.
 const PATIENCE: usize = 3;
-/// Voxels up to which a step solves several promising strips, and how many of every kind of correction: whole voxels answer erratically, small strips are
-/// solved in a fraction of a second.
+/// Voxels up to which a step solves several promising strips, and how many by every penalty: whole voxels answer erratically,
+/// and small strips are solved in a fraction of a second. Where that fails, single knots are touched.
 const SMALL: usize = 5_000;
 const TRIALS: usize = 2;
 
@@ -47,15 +49,15 @@ pub struct Refinement {
     pub design: Design,
     /// The solution of the best design.
     pub verification: EmbeddedVerification,
-    /// Largest distance from the target, percent of the length: before, and after every step.
+    /// Largest distance from the target, percent of the length: before, and of every strip solved after.
     pub errors_percent: Vec<f64>,
 }
 
 /// Refines a design with at most `iterations` corrections, starting from the one its input has. Every voxel is resolved.
 ///
 /// # Errors
-/// Those of [`Design::compute`] and of [`verify_embedded`] for the design as it is. A correction that cannot be solved ends
-/// the refinement and is not kept.
+/// Those of [`Design::compute`] and of [`verify_embedded`] for the design as it is. A correction that cannot be solved is
+/// not kept.
 pub fn refine(
     input: &DesignInput,
     limits: Limits,
@@ -67,47 +69,115 @@ pub fn refine(
     let part = 1.0 / (iterations + 1) as f64;
     let design = Design::compute(input, limits)?;
     let verification = verify_embedded(&design, &options, &|share| progress(part * share))?;
-    let mut errors = vec![rounded_error(&verification)];
-    let mut factors: Vec<f64> = (0..FACTORS).map(|i| factor(input, i)).collect();
-    let mut lines: Vec<_> = proposal::lines(&design, &verification.verification.midline_mm).into_iter().collect();
-    let mut solved = vec![design.grid().clone()];
-    let mut best = (design, verification);
-    let (mut index, mut failures) = (0, 0);
+    let mut search = Search {
+        limits,
+        iterations,
+        options,
+        progress,
+        errors: vec![rounded_error(&verification)],
+        factors: (0..FACTORS).map(|i| factor(input, i)).collect(),
+        lines: proposal::lines(&design, &verification.verification.midline_mm).into_iter().collect(),
+        solved: vec![design.grid().clone()],
+        best: (design, verification),
+        index: 0,
+    };
+    let mut failures = 0;
     for step in 0..iterations {
-        let (design, midline) = (&best.0, best.1.verification.midline_mm.as_slice());
-        let small = design.grid().phases().len() <= SMALL;
-        let known =
-            Best { design, factors: &factors, midline, lines: &lines, index, solved: &solved, limits, iterations };
-        let mut proposals = known.next(if small { TRIALS } else { 1 });
-        if !small {
-            proposals.truncate(1);
+        let (before, span) = (search.lowest(), [part * (step + 1) as f64, part]);
+        if search.is_small() && failures > 0 {
+            search.touch(span)?;
+        } else {
+            search.advance(span)?;
         }
-        let (mut helped, share_of_each) = (false, part / proposals.len().max(1) as f64);
-        for (trial, next) in proposals.into_iter().enumerate() {
-            let started = part * (step + 1) as f64 + share_of_each * trial as f64;
-            let told = |share: f64| progress(started + share_of_each * share);
-            let verification = match verify_embedded(&next.design, &options, &told) {
-                Ok(verification) => verification,
-                Err(Error::Solver(_)) => continue,
-                Err(error) => return Err(error),
-            };
-            let error = rounded_error(&verification);
-            let so_far = errors.iter().copied().fold(f64::INFINITY, f64::min);
-            errors.push(error);
-            let Some(both) = proposal::lines(&next.design, &verification.verification.midline_mm) else { continue };
-            lines.push(both);
-            solved.push(next.design.grid().clone());
-            helped |= error < WORTHWHILE * so_far;
-            if error < so_far {
-                (factors, best, index) = (next.factors, (next.design, verification), lines.len() - 1);
-            }
-        }
-        failures = if helped { 0 } else { failures + 1 };
+        failures = if search.lowest() < WORTHWHILE * before { 0 } else { failures + 1 };
         if failures == PATIENCE {
             break;
         }
     }
-    recorded(best, limits, iterations, errors)
+    recorded(search.best, limits, iterations, search.errors)
+}
+
+/// The strips solved so far.
+struct Search<'a> {
+    limits: Limits,
+    iterations: usize,
+    options: EmbeddedOptions,
+    progress: Share<'a>,
+    /// Of all of them, percent of the length.
+    errors: Vec<f64>,
+    /// The best one's correction, itself, and its place in `lines`.
+    factors: Vec<f64>,
+    best: (Design, EmbeddedVerification),
+    index: usize,
+    /// Mid-lines by the finite elements and by the elastica.
+    lines: Vec<[nalgebra::DVector<f64>; 2]>,
+    solved: Vec<VoxelGrid>,
+}
+
+impl Search<'_> {
+    fn is_small(&self) -> bool {
+        self.best.0.grid().phases().len() <= SMALL
+    }
+
+    fn lowest(&self) -> f64 {
+        self.errors.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
+    fn known(&self) -> Best<'_> {
+        Best {
+            design: &self.best.0,
+            factors: &self.factors,
+            midline: &self.best.1.verification.midline_mm,
+            lines: &self.lines,
+            index: self.index,
+            solved: &self.solved,
+            limits: self.limits,
+            iterations: self.iterations,
+        }
+    }
+
+    /// Solves the most promising corrections.
+    fn advance(&mut self, [start, part]: [f64; 2]) -> Result<(), Error> {
+        let mut proposals = self.known().next(if self.is_small() { TRIALS } else { 1 });
+        if !self.is_small() {
+            proposals.truncate(1);
+        }
+        let each = part / proposals.len().max(1) as f64;
+        for (trial, next) in proposals.into_iter().enumerate() {
+            self.solve(next, [start + each * trial as f64, each])?;
+        }
+        Ok(())
+    }
+
+    /// Solves changes at one knot after another.
+    fn touch(&mut self, [start, part]: [f64; 2]) -> Result<(), Error> {
+        let each = part / Best::TURNS as f64;
+        for turn in 0..Best::TURNS {
+            if let Some(next) = self.known().touched(turn) {
+                self.solve(next, [start + each * turn as f64, each])?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Solves a strip and keeps it if it is the best. One that is not solved counts as solved in vain.
+    fn solve(&mut self, next: Proposal, [start, part]: [f64; 2]) -> Result<(), Error> {
+        let told = |share: f64| (self.progress)(start + part * share);
+        let verification = match verify_embedded(&next.design, &self.options, &told) {
+            Ok(verification) => verification,
+            Err(Error::Solver(_)) => return Ok(()),
+            Err(error) => return Err(error),
+        };
+        let Some(both) = proposal::lines(&next.design, &verification.verification.midline_mm) else { return Ok(()) };
+        let (error, lowest) = (rounded_error(&verification), self.lowest());
+        self.errors.push(error);
+        self.lines.push(both);
+        self.solved.push(next.design.grid().clone());
+        if error < lowest {
+            (self.factors, self.best, self.index) = (next.factors, (next.design, verification), self.lines.len() - 1);
+        }
+        Ok(())
+    }
 }
 
 /// The factors after a change of their logarithm.

@@ -18,8 +18,8 @@ use super::mapping::{KNOTS, Mapping, Penalty, Sensitivity, at, line};
 /// Penalties of the least squares with their weights, and parts of the step, that are tried.
 const PENALTIES: [(Penalty, [f64; 3]); 2] = [(Penalty::Size, [0.02, 0.05, 0.15]), (Penalty::Bends, [0.05, 0.2, 0.8])];
 const SIZES: [f64; 6] = [0.3, 0.5, 0.7, 0.85, 1.0, 1.15];
-/// Changes of the factor's logarithm at single knots.
-const TOUCHES: [f64; 4] = [-0.2, -0.08, 0.08, 0.2];
+/// Changes of the factor's logarithm at a single knot.
+const TOUCHES: [f64; 2] = [0.15, -0.15];
 /// Weight of the mean misfit beside the largest.
 const MEAN: f64 = 0.1;
 
@@ -56,8 +56,8 @@ pub(super) fn lines(design: &Design, midline: &[MidlinePoint]) -> Option<[DVecto
 }
 
 impl Best<'_> {
-    /// The voxels, other than those solved, that promise to come closest to the target: at most `most` of every kind of
-    /// correction, the most promising first; none where the elastica does not answer.
+    /// The voxels, other than those solved, that promise to come closest to the target: at most `most` by every
+    /// penalty, the most promising first; none where the elastica does not answer.
     pub(super) fn next(&self, most: usize) -> Vec<Proposal> {
         let mut promising: Vec<Proposal> = Vec::new();
         for candidates in self.candidates().unwrap_or_default() {
@@ -76,8 +76,21 @@ impl Best<'_> {
         promising
     }
 
-    /// Corrections by every penalty, and at single knots.
-    fn candidates(&self) -> Option<[Vec<Proposal>; 3]> {
+    /// The best strip with another modulus about one knot, in turn the second of which is softer; none where that changes
+    /// no voxel, or only to what was solved.
+    pub(super) fn touched(&self, turn: usize) -> Option<Proposal> {
+        let (knot, touch) = (turn / TOUCHES.len(), TOUCHES[turn % TOUCHES.len()]);
+        let change: [f64; KNOTS] = std::array::from_fn(|i| if i == knot { touch } else { 0.0 });
+        let factors = corrected(self.design, self.factors, |share| at(&change, share));
+        let design = self.designed(&factors)?;
+        (!self.solved.contains(design.grid())).then_some(Proposal { factors, design, expected: f64::NAN })
+    }
+
+    /// Number of turns of [`Self::touched`].
+    pub(super) const TURNS: usize = KNOTS * TOUCHES.len();
+
+    /// Corrections by every penalty.
+    fn candidates(&self) -> Option<[Vec<Proposal>; 2]> {
         let own = self.lines.get(self.index)?;
         let target = line(self.midline, |s| self.design.profile().position(s));
         let mapping = Mapping::new(own, self.lines);
@@ -86,21 +99,23 @@ impl Best<'_> {
             let factors = corrected(self.design, self.factors, |share| size * at(change, share));
             self.expect(factors, &mapping, &target)
         };
-        let [sizes, bends] = PENALTIES.map(|(penalty, weights)| {
+        Some(PENALTIES.map(|(penalty, weights)| {
             let changes = weights.iter().filter_map(|weight| sensitivity.change(penalty, *weight));
             changes.flat_map(|change| SIZES.map(|size| expect(&change, size))).flatten().collect()
-        });
-        let knot = |k: usize| std::array::from_fn::<f64, KNOTS, _>(|i| if i == k { 1.0 } else { 0.0 });
-        let touches = (0..KNOTS).flat_map(|k| TOUCHES.map(|size| expect(&knot(k), size))).flatten().collect();
-        Some([sizes, bends, touches])
+        }))
+    }
+
+    /// The design of a correction.
+    fn designed(&self, factors: &[f64]) -> Option<Design> {
+        let mut input: DesignInput = self.design.input().clone();
+        let correction = factors.to_vec();
+        input.refine = Some(RefineInput { iterations: self.iterations, correction, errors_percent: Vec::new() });
+        Design::compute(&input, self.limits).ok()
     }
 
     /// What is to be expected of a correction.
     fn expect(&self, factors: Vec<f64>, mapping: &Mapping, target: &DVector<f64>) -> Option<Proposal> {
-        let mut input: DesignInput = self.design.input().clone();
-        let correction = factors.clone();
-        input.refine = Some(RefineInput { iterations: self.iterations, correction, errors_percent: Vec::new() });
-        let design = Design::compute(&input, self.limits).ok()?;
+        let design = self.designed(&factors)?;
         let path = design.shape_of_slices()?;
         let [fine, coarse] = self.lines.get(self.index)?;
         let moved = line(self.midline, |s| path.final_shape().position(s)) - coarse;
