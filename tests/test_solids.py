@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import math
-import os
 from pathlib import Path
 
 import lib3mf
@@ -13,7 +12,6 @@ import pytest
 import trimesh
 from conftest import EXAMPLES, design, read_json, run
 
-LONG = bool(os.environ.get("VOXELASTICA_LONG"))
 WRAPPER = lib3mf.get_wrapper()
 DECKLESS = "\n[decks]\nwrite = []\n"
 
@@ -268,7 +266,6 @@ def test_a_strip_has_no_assembly_and_a_flower_too_large_for_single_precision_is_
     assert not (folder / "fabrication").exists()
 
 
-@pytest.mark.skipif(not LONG, reason="every example at full resolution; set VOXELASTICA_LONG")
 @pytest.mark.parametrize("name", sorted(path.stem for path in EXAMPLES.glob("*.toml")))
 def test_every_example_is_printable(examples: dict[str, Path], name: str) -> None:
     folder = examples[name]
