@@ -231,8 +231,7 @@ def _phases(document: Any, analysis: Any, design: Any, deck: Deck) -> list[Any]:
         if name not in sections:
             continue
         row = {"name": name, "set": name, "modulus": phase["modulus_mpa"], "elements": [], "solids": []}
-        density = phase.get("density_kg_m3") or 0.0
-        made.append(_material(document, analysis, row, phase["poisson"], density or 1000.0, None))
+        made.append(_material(document, analysis, row, phase["poisson"], phase.get("density_kg_m3") or 0.0, None))
     return made
 
 

@@ -37,6 +37,9 @@ impl Components {
             }
         }
         for node in 0..nodes {
+            if node.is_multiple_of(ASK_EVERY) {
+                watch.at(0.0)?;
+            }
             if parts.parent[node] != NONE {
                 parts.parent[node] = parts.root(node as u32);
             }

@@ -145,6 +145,7 @@ pub fn solve(
     memory::require(mesh, options.memory)?;
     let present = present(mesh, conductivities)?;
     refuse_isolated(mesh, conductivities, &boundary.given, options.quantity, watch)?;
+    watch.at(0.0)?;
     let (least, most) = (present[0], present[present.len() - 1]);
     let mut steady = if most / least <= LARGEST_CONTRAST {
         together(mesh, conductivities, [least, most], boundary, options, watch)?
@@ -206,6 +207,7 @@ fn refuse_isolated(
             held[*root as usize] = true;
         }
     }
+    watch.at(0.0)?;
     let root = |cell: [usize; 3]| roots[mesh.cell_nodes(cell)[0]] as usize;
     let Some(first) = cells().find(|cell| !held[root(*cell)]) else { return Ok(()) };
     let voxels = cells().filter(|cell| root(*cell) == root(first)).count();

@@ -409,7 +409,7 @@ const DESIGN: &[Parameter] = &[
     Parameter {
         key: "refine.iterations",
         kind: Kind::Integer { least: 0, most: 20 },
-        description: "Finite-element solutions that may be spent on correcting the modulus; none without this table.",
+        description: "Most rounds of solving and correcting the modulus; a round solves one strip, of small ones several. None without this table.",
         ..BASE
     },
     Parameter {
