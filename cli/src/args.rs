@@ -40,6 +40,8 @@ pub enum Command {
     Fabricate(FabricateOptions),
     /// Let heat and current through a design's strip: fields, effective conductivities, pictures.
     Conduct(Box<ConductOptions>),
+    /// Press the hub of a closed dome down: force-displacement curve, rigidity, energy.
+    Indent(IndentOptions),
     /// Test every layout of a small cell of two phases: moduli along x, y and z against their bounds.
     Micromechanics(MicromechanicsOptions),
     /// List the materials of the library.
@@ -232,6 +234,62 @@ pub struct ConductOptions {
     /// Write even if the disk seems too small.
     #[arg(long)]
     pub yes: bool,
+}
+
+/// Options of `indent`. What is not given is what the design's [indentation] table says.
+#[derive(Debug, Args)]
+pub struct IndentOptions {
+    /// Folder that `design` wrote.
+    pub folder: PathBuf,
+    /// Which model to press.
+    #[arg(long, value_enum, default_value_t = IndentModel::Elastica)]
+    pub model: IndentModel,
+    /// What presses.
+    #[arg(long, value_enum)]
+    pub indenter: Option<IndenterChoice>,
+    /// How far, mm [default: a tenth of the spoke's length].
+    #[arg(long, value_name = "MM")]
+    pub depth: Option<f64>,
+    /// Steps of the curve.
+    #[arg(long, value_name = "N")]
+    pub steps: Option<usize>,
+    /// Diameter of the flat indenter, mm [default: 0.339 of the dome's].
+    #[arg(long, value_name = "MM")]
+    pub indenter_diameter: Option<f64>,
+    /// How the elastica bends.
+    #[arg(long, value_enum)]
+    pub bending: Option<BendingChoice>,
+    /// Share by which all moduli may be off: the force's band.
+    #[arg(long, value_name = "PCT")]
+    pub modulus_band: Option<f64>,
+    /// Folder to write into [default: the design's].
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+}
+
+/// Models that can be pressed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum IndentModel {
+    /// The graded strip as an elastica; milliseconds.
+    Elastica,
+}
+
+/// What presses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum IndenterChoice {
+    /// A flat rigid plate that moves with the hub and may touch the spokes.
+    Flat,
+    /// Nothing but the hub is pushed.
+    Hub,
+}
+
+/// How a strip bends across its width.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum BendingChoice {
+    /// Free to curl: modulus E.
+    Beam,
+    /// Kept straight: modulus E/(1 - nu^2).
+    PlaneStrain,
 }
 
 /// What flows.

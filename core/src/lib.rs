@@ -56,6 +56,7 @@ mod error;
 pub mod fabrication;
 pub mod fem;
 pub mod flower;
+pub mod indentation;
 pub mod input;
 pub mod materials;
 mod memory;

@@ -4,6 +4,7 @@ pub mod compare;
 pub mod conduct;
 pub mod design;
 pub mod fabricate;
+pub mod indent;
 pub mod lists;
 pub mod micromechanics;
 pub mod verify;

@@ -12,6 +12,7 @@ pub mod document;
 mod error;
 pub mod fabrication;
 pub mod files;
+pub mod indentation;
 pub mod model;
 pub mod parameters;
 pub mod reference;
@@ -21,6 +22,7 @@ pub mod target_file;
 pub use conduction::{ConductionInput, Electrode, ThresholdOf};
 pub use error::{InputError, InputProblem};
 pub use fabrication::{FabricationInput, FabricationKind, PrintSource, Printer, Scope, ThreeMfGeometry};
+pub use indentation::{Bending, IndentationInput, Indenter, Neighbours};
 pub use model::{
     DeckKind, DeckSolver, DeckStyle, DecksInput, DesignInput, MaterialsInput, StripsInput, TargetInput, ThrustInput,
     VoxelsInput,

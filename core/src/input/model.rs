@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::InputError;
 use super::conduction::ConductionInput;
 use super::fabrication::FabricationInput;
+use super::indentation::IndentationInput;
 use crate::elastica::{HubSupport, ThrustChoice};
 use crate::materials::{Material, library};
 use crate::micromechanics::PhaseSet;
@@ -41,6 +42,9 @@ pub struct DesignInput {
     /// Heat and current; absent where the defaults are meant.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub conduction: Option<ConductionInput>,
+    /// The dome under load; absent where the defaults are meant.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub indentation: Option<IndentationInput>,
 }
 
 /// The target of a design.
@@ -489,6 +493,9 @@ impl DesignInput {
         }
         if let Some(conduction) = &self.conduction {
             conduction.validate()?;
+        }
+        if let Some(indentation) = &self.indentation {
+            indentation.validate()?;
         }
         if let Some(refine) = &self.refine {
             refine.validate()?;

@@ -4,6 +4,7 @@
 
 mod conduction;
 mod fabrication;
+mod indentation;
 
 use serde::Serialize;
 
@@ -113,7 +114,7 @@ const BASE: Parameter =
     Parameter { key: "", kind: Kind::Text, unit: None, default: None, required: false, targets: &[], description: "" };
 
 /// Keys by subject, in the order in which a design file is read.
-const GROUPS: [&[Parameter]; 3] = [DESIGN, conduction::CONDUCTION, fabrication::FABRICATION];
+const GROUPS: [&[Parameter]; 4] = [DESIGN, conduction::CONDUCTION, fabrication::FABRICATION, indentation::INDENTATION];
 
 /// Number of keys.
 const COUNT: usize = {
@@ -144,7 +145,7 @@ const fn all() -> [Parameter; COUNT] {
 }
 
 /// Tables that a design has only where its file has them, so that their defaults change no other design.
-pub const OPTIONAL_TABLES: [&str; 2] = ["conduction", "fabrication"];
+pub const OPTIONAL_TABLES: [&str; 3] = ["conduction", "fabrication", "indentation"];
 
 /// Keys of the design itself.
 const DESIGN: &[Parameter] = &[

@@ -5,3 +5,4 @@ pub(crate) mod monotone_cubic;
 pub(crate) mod quadrature;
 pub(crate) mod root;
 pub(crate) mod sparse_cholesky;
+pub(crate) mod tridiagonal;

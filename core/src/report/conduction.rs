@@ -25,7 +25,7 @@ const MOST_POINTS: usize = 1201;
 const MOST_PIXELS: usize = 2400;
 
 /// Lines that can be told apart with every kind of colour vision.
-const SERIES: [Colour; 8] = [
+pub(super) const SERIES: [Colour; 8] = [
     PREDICTED,
     MEASURED,
     Colour([0x00, 0x8a, 0x6e]),
@@ -204,7 +204,12 @@ pub fn history_svg(picture: &HistoryPicture) -> Result<String, ReportError> {
 }
 
 /// A chart with a title, a legend in columns and a caption.
-fn framed(title: &str, legend: Vec<(Colour, &str)>, chart: &Chart, caption: &[String]) -> Result<String, ReportError> {
+pub(super) fn framed(
+    title: &str,
+    legend: Vec<(Colour, &str)>,
+    chart: &Chart,
+    caption: &[String],
+) -> Result<String, ReportError> {
     const COLUMNS: usize = 3;
     let caption = wrapped(caption);
     let rows = legend.len().div_ceil(COLUMNS);

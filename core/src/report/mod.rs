@@ -13,6 +13,7 @@ mod chart;
 pub mod conduction;
 mod error;
 mod figures;
+pub mod indentation;
 mod key_numbers;
 pub mod page;
 mod palette;

@@ -1,0 +1,158 @@
+//! The `[indentation]` table: how a closed dome is pressed.
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::InputError;
+use super::check::check_value;
+use super::parameters::parameter;
+
+/// Pressing the hub of a dome down.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct IndentationInput {
+    /// How far, mm; a tenth of the length where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub depth_mm: Option<f64>,
+    /// Points of the curve.
+    pub steps: usize,
+    /// What presses.
+    pub indenter: Indenter,
+    /// Diameter of the flat indenter, mm; 0.339 of the dome's where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub indenter_diameter_mm: Option<f64>,
+    /// Whether neighbouring spokes touch, in finite elements.
+    pub neighbours: Neighbours,
+    /// Whether strips bend as beams or as plates.
+    pub bending: Bending,
+    /// Share by which all moduli may be off, percent.
+    pub modulus_band_percent: f64,
+    /// Elements of the graded model along, across and through.
+    pub graded_elements: [usize; 3],
+    /// Pressure a millimetre of overclosure in decks, N/mm^3.
+    pub contact_stiffness_n_mm3: f64,
+    /// Loading rate of the explicit deck, depth over the dome's height, 1/s.
+    pub loading_rate_per_s: f64,
+    /// Factor on the density in the explicit deck.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mass_scaling: Option<f64>,
+}
+
+/// What presses a dome.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Indenter {
+    /// A flat rigid plate that moves with the hub and may touch the spokes.
+    Flat,
+    /// Nothing but the hub is pushed.
+    Hub,
+}
+
+impl Indenter {
+    /// The word of the design file.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Flat => "flat",
+            Self::Hub => "hub",
+        }
+    }
+}
+
+/// What the spokes beside a spoke do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Neighbours {
+    /// Planes of symmetry stand in the way of its sides.
+    Touch,
+    /// It passes through them.
+    Ignore,
+}
+
+/// How a strip bends across its width.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Bending {
+    /// Free to curl: modulus `E`.
+    Beam,
+    /// Kept straight: modulus `E/(1 - nu^2)`.
+    PlaneStrain,
+}
+
+/// Diameter of the indenter over that of the dome: 50 mm on the hemisphere of 100 mm spokes.
+pub const INDENTER_SHARE: f64 = 0.339;
+/// Depth over the length of a spoke.
+pub const DEPTH_SHARE: f64 = 0.1;
+
+impl Default for IndentationInput {
+    fn default() -> Self {
+        Self {
+            depth_mm: None,
+            steps: 40,
+            indenter: Indenter::Flat,
+            indenter_diameter_mm: None,
+            neighbours: Neighbours::Touch,
+            bending: Bending::Beam,
+            modulus_band_percent: 10.0,
+            graded_elements: [60, 6, 2],
+            contact_stiffness_n_mm3: 50.0,
+            loading_rate_per_s: 0.1,
+            mass_scaling: None,
+        }
+    }
+}
+
+impl IndentationInput {
+    /// Types and ranges of all keys (values may come from elsewhere than a design file).
+    ///
+    /// # Errors
+    /// [`InputError`] naming the key.
+    pub fn validate(&self) -> Result<(), InputError> {
+        if let Ok(Value::Object(table)) = serde_json::to_value(self) {
+            for (name, value) in &table {
+                let key = format!("indentation.{name}");
+                if let Some(parameter) = parameter(&key) {
+                    check_value(parameter, &key, value)?;
+                }
+            }
+        }
+        if let Some(odd) = self.graded_elements[1..].iter().find(|n| *n % 2 == 1) {
+            let problem = "the numbers across and through the spoke must be even";
+            return Err(InputError::new("indentation.graded_elements", odd, problem)
+                .help("an even number has nodes on the mid-line"));
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::Map;
+
+    use super::*;
+    use crate::input::parameters::PARAMETERS;
+
+    #[test]
+    fn defaults_are_those_of_the_table() {
+        let pairs = PARAMETERS.iter().filter_map(|p| {
+            let key = p.key.strip_prefix("indentation.")?;
+            Some((key.to_owned(), serde_json::from_str(p.default?).unwrap()))
+        });
+        let table: Map<String, Value> = pairs.collect();
+        let parsed: IndentationInput = serde_json::from_value(Value::Object(table)).unwrap();
+        assert_eq!(parsed, IndentationInput::default());
+    }
+
+    #[test]
+    fn values_from_elsewhere_are_held_against_the_table() {
+        for (input, key) in [
+            (IndentationInput { depth_mm: Some(-1.0), ..IndentationInput::default() }, "depth_mm"),
+            (IndentationInput { steps: 0, ..IndentationInput::default() }, "steps"),
+            (IndentationInput { graded_elements: [60, 5, 2], ..IndentationInput::default() }, "graded_elements"),
+        ] {
+            let error = input.validate().unwrap_err().to_string();
+            assert!(error.contains(key), "{error}");
+        }
+        IndentationInput::default().validate().unwrap();
+    }
+}
