@@ -308,11 +308,28 @@ fn a_problem_too_large_for_memory_is_refused_before_it_starts() {
 }
 
 #[test]
-fn cancelling_stops_within_an_iteration() {
+fn a_solution_stops_wherever_it_is_cancelled_and_asks_often() {
+    use std::sync::atomic::{AtomicUsize, Ordering};
     let mesh = mixed([80, 4, 24], 0.5, 1);
-    let calls = std::sync::atomic::AtomicUsize::new(0);
-    let progress = |_: f64| calls.fetch_add(1, std::sync::atomic::Ordering::Relaxed) < 6;
-    let watch = Watch { progress: &progress, span: [0.0, 1.0] };
-    let found = solve(&mesh, &[1.0, 5.0], &ends(&mesh), &SteadyOptions::default(), watch);
-    assert_eq!(found.unwrap_err(), ConductionError::Cancelled);
+    // In one system, and with the phases apart.
+    for conductivities in [[1.0, 5.0], [1e-12, 1.0]] {
+        let run = |stop: usize| {
+            let asked = AtomicUsize::new(0);
+            let progress = |_: f64| asked.fetch_add(1, Ordering::Relaxed) < stop;
+            let watch = Watch { progress: &progress, span: [0.0, 1.0] };
+            let found = solve(&mesh, &conductivities, &ends(&mesh), &SteadyOptions::default(), watch).map(|_| ());
+            (found, asked.into_inner())
+        };
+        let (whole, questions) = run(usize::MAX);
+        whole.unwrap();
+        // Every application of the operator and every sweep of the smoother asks, and so does setting them up.
+        assert!(questions > 100, "{questions}");
+        for k in 0..60 {
+            let stop = k * questions / 60;
+            let (stopped, asked) = run(stop);
+            assert_eq!(stopped, Err(ConductionError::Cancelled), "question {stop} of {questions}");
+            // Threads that run already may ask once more each; nothing new begins.
+            assert!(asked <= stop + 64, "{asked} questions, the answer to {stop} was no");
+        }
+    }
 }

@@ -173,7 +173,7 @@ fn the_tangent_is_the_derivative_of_the_forces() {
     for (law, lift) in [(Law::SaintVenantKirchhoff, true), (Law::NeoHooke, false)] {
         let material = Isotropic { modulus: 3.0, poisson: 0.35 };
         let model = strip([6.0, 3.0, 1.0], [4, 2, 1], material, law);
-        let pattern = Pattern::new(&model.mesh, lift);
+        let pattern = Pattern::new(&model.mesh, lift, &never).unwrap();
         let displaced = (0..model.mesh.nodes.len()).map(|n| [0, 1, 2].map(|k| 0.1 * ((3 * n + 7 * k) as f64).sin()));
         let mut state = State::new(&model, displaced.collect());
         let mut values = vec![0.0; pattern.rows.len()];

@@ -91,9 +91,9 @@ pub fn conduct(design: &Design, case: Case, watch: &Watch) -> Result<Answer, Fai
     };
     let input = design.input().conduction.clone().unwrap_or_default();
     let failed = |error| Failure::from(voxelastica_core::Error::from(error));
-    let strip = Strip::new(design, model, shape, input.graded_elements).map_err(failed)?;
     let progress = watch.shares();
     let watched = pcg::Watch { progress: &progress, span: [0.0, 1.0] };
+    let strip = Strip::new_unless(design, model, shape, input.graded_elements, watched).map_err(failed)?;
     solve(&strip, problem, Regimes { steady, transient }, &input, watched).map_err(failed)
 }
 

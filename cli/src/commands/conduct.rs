@@ -23,7 +23,10 @@ pub fn run(options: &ConductOptions, console: &Console) -> Result<u8, Error> {
     let mut strips = Vec::new();
     for model in models(options) {
         for shape in shapes(options) {
-            let strip = Strip::new(&design, model, shape, input.graded_elements).map_err(|e| located(e.into()))?;
+            let going = |_: f64| !console.is_cancelled();
+            let watch = Watch { progress: &going, span: [0.0, 1.0] };
+            let strip = Strip::new_unless(&design, model, shape, input.graded_elements, watch);
+            let strip = strip.map_err(|e| located(e.into()))?;
             strips.push(strip);
         }
     }

@@ -161,7 +161,7 @@ fn mixture(
     coupon.voxels.pattern = pattern;
     coupon.voxels.matching = Match::Modulus;
     let design = Design::compute(&coupon, Limits::default())?;
-    let strip = Strip::new(&design, Model::Voxel, Shape::Flat, [1; 3])?;
+    let strip = Strip::new_unless(&design, Model::Voxel, Shape::Flat, [1; 3], watch)?;
     let conductivities = strip.property(property)?;
     let mesh = &strip.mesh;
     let mut boundary = Boundary::insulated(mesh);

@@ -216,13 +216,18 @@ pub(super) fn at(point: &[(usize, f64)], field: &[f64]) -> f64 {
 
 /// Bounds on the effective conductivity from the field of the uniform strip: the mean and the harmonic mean of the
 /// conductivities, weighted with that field's dissipation.
-pub(super) fn bounds(strip: &Strip, values: &[f64], uniform: &[f64]) -> [f64; 2] {
-    let weights = strip.mesh.dissipations(uniform, values.len());
+pub(super) fn bounds(
+    strip: &Strip,
+    values: &[f64],
+    uniform: &[f64],
+    watch: Watch<'_>,
+) -> Result<[f64; 2], ConductionError> {
+    let weights = strip.mesh.dissipations(uniform, values.len(), watch)?;
     let whole: f64 = weights.iter().sum();
     let mean = |f: &dyn Fn(f64) -> f64| {
         weights.iter().zip(values).filter(|(w, _)| **w > 0.0).map(|(w, k)| w / whole * f(*k)).sum::<f64>()
     };
-    [mean(&|k| k), 1.0 / mean(&|k| 1.0 / k)]
+    Ok([mean(&|k| k), 1.0 / mean(&|k| 1.0 / k)])
 }
 
 /// The time within a step at which a function gets to zero from below.

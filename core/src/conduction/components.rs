@@ -4,7 +4,7 @@ use super::ConductionError;
 use super::pcg::Watch;
 
 /// Cells after which it is asked whether to go on.
-const ASK_EVERY: usize = 1 << 16;
+pub(super) const ASK_EVERY: usize = 1 << 16;
 
 /// Disjoint sets of nodes.
 #[derive(Debug)]

@@ -49,15 +49,18 @@ pub(super) fn solve(
     let (strong, weaker) = (group(true, most), group(false, weak));
     let stiffened: Vec<f64> = weaker.iter().zip(&strong).map(|(w, s)| if *s > 0.0 { RIGID * s } else { *w }).collect();
     let parts = Parts::new(mesh, &strong, boundary, watch)?;
+    watch.at(0.0)?;
     let ratio = weak / most;
 
-    let mut conductor =
-        Conductor { plain: Plain::new(Operator::new(mesh, &strong, &[], &boundary.given), watch)?, parts: &parts };
+    let operator = Operator::new(mesh, &strong, &[], &boundary.given, watch)?;
+    let mut conductor = Conductor { plain: Plain::new(operator, watch)?, parts: &parts };
     watch.at(0.05)?;
-    let weak_operator = Operator::new(mesh, &weaker, &[], &parts.fixed);
-    let weights = parts.weights(&weak_operator);
+    let weak_operator = Operator::new(mesh, &weaker, &[], &parts.fixed, watch)?;
+    watch.at(0.05)?;
+    let weights = parts.weights(&weak_operator, watch)?;
+    watch.at(0.05)?;
     let mut insulator = Insulator {
-        preconditioner: Plain::new(Operator::new(mesh, &stiffened, &[], &parts.fixed), watch)?,
+        preconditioner: Plain::new(Operator::new(mesh, &stiffened, &[], &parts.fixed, watch)?, watch)?,
         operator: weak_operator,
         parts: &parts,
         weights,
@@ -80,7 +83,8 @@ pub(super) fn solve(
                 let mut correction = vec![0.0; n];
                 // Measured against the largest load so far: later turns only correct.
                 let mut trial = vec![0.0; n];
-                system.precondition(load, &mut trial, &|| true);
+                system.precondition(load, &mut trial, &|| watch.goes_on());
+                watch.at(share(0.5 * which as f64))?;
                 scales[which] = scales[which].max(dot(load, &trial));
                 let part = watch.part(share(0.5 * which as f64), share(0.5 + 0.5 * which as f64));
                 let scale = Some(scales[which]);
@@ -104,13 +108,16 @@ pub(super) fn solve(
         // A_C w = f - e A_I (a + w).
         add(&levels, &differences, &mut sum);
         insulator.operator.flux(&sum, &mut flux);
+        watch.at(share(0.0))?;
         conductor.plain.operator.flux(&differences, &mut load);
         for ((l, f), b) in load.iter_mut().zip(&flux).zip(&boundary.loads) {
             *l = b / most - *l - ratio * f;
         }
         mask(&mut load, conductor.plain.operator.inverse_diagonal());
+        watch.at(share(0.0))?;
         parts.remove_means(&mut load);
         let correction = stage(&mut conductor, &load, 0, "current within the conducting phase", &mut total)?;
+        watch.at(share(0.5))?;
         combine(1.0, &correction, 1.0, &mut differences);
         let means = parts.remove_means(&mut differences);
         parts.raise(&mut levels, &means);
@@ -118,17 +125,19 @@ pub(super) fn solve(
         // Balance of every part and every node inside the insulating phase.
         add(&levels, &differences, &mut sum);
         insulator.operator.flux(&sum, &mut flux);
+        watch.at(share(0.5))?;
         for ((l, f), b) in load.iter_mut().zip(&flux).zip(&boundary.loads) {
             *l = b / weak - f;
         }
+        watch.at(share(0.5))?;
         parts.gather(&mut load);
         let correction = stage(&mut insulator, &load, 1, "potentials inside the insulating phase", &mut total)?;
         parts.spread_into(&correction, &mut insulator.full);
         combine(1.0, &insulator.full, 1.0, &mut levels);
         if sweep > 1 && total.count == before {
             add(&levels, &differences, &mut sum);
-            let through = conductor.plain.operator.slice_fluxes(&differences);
-            let around = insulator.operator.slice_fluxes(&sum);
+            let through = conductor.plain.operator.slice_fluxes(&differences, watch)?;
+            let around = insulator.operator.slice_fluxes(&sum, watch)?;
             let slice_flux = through.iter().zip(&around).map(|(c, i)| most * c + weak * i).collect();
             let apart = Some(Apart { floating: parts.floating, percolates: parts.percolates, sweeps: sweep });
             let levels = conductor.plain.multigrid.levels();
@@ -187,6 +196,7 @@ impl Parts {
         let conducts = |m: u16| m != VOID && strong[usize::from(m)] > 0.0;
         let cells = mesh.materials().iter().enumerate().filter(|(_, m)| conducts(**m));
         let components = Components::new(mesh.nodes(), cells.map(|(n, _)| mesh.cell_nodes(mesh.cell(n))), watch)?;
+        watch.at(0.0)?;
         let roots = components.roots().to_vec();
         let mut hold = vec![Hold::Floating; mesh.nodes()];
         for (node, root) in roots.iter().enumerate().filter(|(n, r)| **r != NONE && boundary.given[*n]) {
@@ -200,7 +210,9 @@ impl Parts {
         }
         let fixed =
             |node: usize| boundary.given[node] || (roots[node] != NONE && hold[roots[node] as usize] != Hold::Floating);
+        watch.at(0.0)?;
         let fixed: Vec<bool> = (0..mesh.nodes()).map(fixed).collect();
+        watch.at(0.0)?;
         let is_root = |n: &usize| roots[*n] as usize == *n;
         let floating = (0..mesh.nodes()).filter(is_root).filter(|n| hold[*n] == Hold::Floating).count();
         let percolates = (0..mesh.nodes()).filter(is_root).any(|n| hold[n] == Hold::Through);
@@ -290,16 +302,18 @@ impl Parts {
     }
 
     /// Weights of a part's nodes, adding up to one: how much they have to do with the insulating phase.
-    fn weights(&self, weak: &Operator<'_>) -> Vec<f64> {
+    fn weights(&self, weak: &Operator<'_>, watch: Watch<'_>) -> Result<Vec<f64>, ConductionError> {
         let touch = |d: f64| if d > 0.0 { 1.0 / d } else { 0.0 };
         let diagonal: Vec<f64> = weak.inverse_diagonal().iter().map(|d| touch(*d)).collect();
+        watch.at(0.0)?;
         let (sums, _) = self.sums(&diagonal);
+        watch.at(0.0)?;
         let weight = |node: usize| match self.floating_root(node) {
             Some(root) if sums[root] > 0.0 => diagonal[node] / sums[root],
             Some(_) => 0.0,
             None => 1.0,
         };
-        (0..diagonal.len()).map(weight).collect()
+        Ok((0..diagonal.len()).map(weight).collect())
     }
 }
 

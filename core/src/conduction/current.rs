@@ -35,7 +35,7 @@ pub(super) fn solve(
     let (resistance, uniform) = unit_resistance(task, watch.part(0.5 * share, share))?;
     let current = task.input.current_a;
     let effective = |potential: f64| 1e3 * resistance * current / potential;
-    let bounds = bounds(task.strip, &sigma, &uniform).map(|s| 1e3 * s);
+    let bounds = bounds(task.strip, &sigma, &uniform, watch)?.map(|s| 1e3 * s);
     if potential / task.strip.length_mm > BREAKDOWN_V_MM {
         notes.push(format!(
             "{} V over {} mm are far beyond what any material stands: read potentials as resistances times {current} A.",

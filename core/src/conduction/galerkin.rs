@@ -15,6 +15,8 @@ use super::stencil::Stencil;
 
 /// Cells after which it is asked whether to go on.
 const ASK_EVERY: usize = 1024;
+/// Lines of nodes after which it is.
+const LINES: usize = 16;
 
 /// What happens to one direction from a level to the next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -219,8 +221,8 @@ fn project(matrix: &mut Matrix, direction: usize, step: Step, second: usize) {
 }
 
 impl CoarseElements {
-    /// The 27-point stencils of the level's nodes.
-    pub(super) fn stencil(&self) -> Stencil {
+    /// The 27-point stencils of the level's nodes; `None` where `go_on` says no.
+    pub(super) fn stencil(&self, go_on: &(dyn Fn() -> bool + Sync)) -> Option<Stencil> {
         let nodes = self.nodes();
         let [_, levels, across] = nodes;
         let per_line = 27 * across;
@@ -232,7 +234,10 @@ impl CoarseElements {
             let before = index.checked_sub(1).map(|c| (c, 1));
             before.into_iter().chain((index < self.cells[d]).then_some((index, 0))).collect()
         };
-        values.par_chunks_mut(per_line).enumerate().for_each(|(line, out)| {
+        let all = values.par_chunks_mut(per_line).enumerate().try_for_each(|(line, out)| {
+            if line.is_multiple_of(LINES) && !go_on() {
+                return None;
+            }
             let (plane, level) = (line / levels, line % levels);
             for (i, a) in around(plane, 0) {
                 for (k, b) in around(level, 1) {
@@ -253,7 +258,8 @@ impl CoarseElements {
                     }
                 }
             }
+            Some(())
         });
-        Stencil::new(nodes, values)
+        all.map(|()| Stencil::new(nodes, values))
     }
 }

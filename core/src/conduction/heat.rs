@@ -51,7 +51,7 @@ fn steady(task: &Task<'_>, watch: Watch<'_>) -> Result<SteadyAnswer, ConductionE
     let flow = found.slice_flux[0];
     let (conductance, uniform) = unit_strip(task.strip, watch.part(0.5, 1.0))?;
     let effective = flow / (difference * conductance);
-    let bounds = bounds(task.strip, &conductivities, &uniform).map(|k| 1e3 * k);
+    let bounds = bounds(task.strip, &conductivities, &uniform, watch)?.map(|k| 1e3 * k);
     Ok(SteadyAnswer::new(found, [flow, difference], 1e3 * effective, bounds, task.points))
 }
 

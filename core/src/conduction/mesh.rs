@@ -8,12 +8,16 @@ use rayon::prelude::*;
 
 use super::ConductionError;
 use super::brick::{Brick, Point, corner};
+use super::pcg::Watch;
 
 /// The material number of a cell that is not there.
 pub const VOID: u16 = u16::MAX;
 
 /// Largest number of nodes; indices stay well within 32 bits.
 pub const MOST_NODES: usize = 2_000_000_000;
+
+/// Bricks after which it is asked whether to go on.
+const ASK_EVERY: usize = 1024;
 
 /// Which brick every cell is.
 #[derive(Debug, Clone, PartialEq)]
@@ -88,6 +92,19 @@ impl BrickMesh {
     /// # Errors
     /// [`ConductionError::Size`] for arrays that do not fit, [`ConductionError::Inverted`] for bricks turned inside out.
     pub fn new(cells: [usize; 3], materials: Vec<u16>, geometry: Geometry) -> Result<Self, ConductionError> {
+        Self::new_unless(cells, materials, geometry, Watch::silent())
+    }
+
+    /// As [`Self::new`], unless it is cancelled.
+    ///
+    /// # Errors
+    /// Those of [`Self::new`], and [`ConductionError::Cancelled`].
+    pub fn new_unless(
+        cells: [usize; 3],
+        materials: Vec<u16>,
+        geometry: Geometry,
+        watch: Watch<'_>,
+    ) -> Result<Self, ConductionError> {
         let expected = count(cells);
         let size = |what, found, expected| Err(ConductionError::Size { what, found, expected });
         if materials.len() != expected || expected == 0 {
@@ -107,11 +124,11 @@ impl BrickMesh {
             _ => {}
         }
         let mut mesh = Self { cells, materials, bricks: Bricks { bricks: Vec::new(), strides: [0; 3] }, geometry };
-        mesh.bricks = mesh.shapes()?;
+        mesh.bricks = mesh.shapes(watch)?;
         Ok(mesh)
     }
 
-    fn shapes(&self) -> Result<Bricks, ConductionError> {
+    fn shapes(&self, watch: Watch<'_>) -> Result<Bricks, ConductionError> {
         let [_, layers, across] = self.cells;
         let (strides, many) = match &self.geometry {
             Geometry::Cubes(size) => return Ok(Bricks::uniform(Brick::cube(*size))),
@@ -119,6 +136,9 @@ impl BrickMesh {
             Geometry::Free(_) => ([layers * across, across, 1], self.materials.len()),
         };
         let brick = |n: usize| {
+            if n.is_multiple_of(ASK_EVERY) {
+                watch.at(0.0)?;
+            }
             let cell = match strides[2] {
                 0 => [n / layers, n % layers, 0],
                 _ => self.cell(n),
@@ -249,22 +269,36 @@ impl BrickMesh {
     }
 
     /// `int (grad u)^2 dV` over the cells of every material; at least `materials` entries.
-    #[must_use]
-    pub fn dissipations(&self, u: &[f64], materials: usize) -> Vec<f64> {
-        let mut sums = vec![0.0; materials];
-        for (n, material) in self.materials.iter().enumerate().filter(|(_, m)| **m != VOID) {
-            let [i, k, j] = self.cell(n);
-            let values = self.cell_nodes([i, k, j]).map(|node| u[node]);
-            let matrix = &self.bricks.at(i, k, j).conductance;
-            let m = usize::from(*material);
-            if m >= sums.len() {
-                sums.resize(m + 1, 0.0);
+    ///
+    /// # Errors
+    /// [`ConductionError::Cancelled`] where `watch` says so.
+    pub fn dissipations(&self, u: &[f64], materials: usize, watch: Watch<'_>) -> Result<Vec<f64>, ConductionError> {
+        let per_slice = self.cells[1] * self.cells[2];
+        let of_slice = |i: usize| {
+            watch.at(0.0)?;
+            let mut sums = vec![0.0; materials];
+            let cells = self.materials[i * per_slice..(i + 1) * per_slice].iter().enumerate();
+            for (n, material) in cells.filter(|(_, m)| **m != VOID) {
+                let cell = [i, n / self.cells[2], n % self.cells[2]];
+                let values = self.cell_nodes(cell).map(|node| u[node]);
+                let matrix = &self.bricks.at(cell[0], cell[1], cell[2]).conductance;
+                let m = usize::from(*material);
+                if m >= sums.len() {
+                    sums.resize(m + 1, 0.0);
+                }
+                for (row, v) in matrix.chunks(8).zip(&values) {
+                    sums[m] += v * row.iter().zip(&values).map(|(k, u)| k * u).sum::<f64>();
+                }
             }
-            for (row, v) in matrix.chunks(8).zip(&values) {
-                sums[m] += v * row.iter().zip(&values).map(|(k, u)| k * u).sum::<f64>();
-            }
+            Ok(sums)
+        };
+        let slices = (0..self.cells[0]).into_par_iter().map(of_slice).collect::<Result<Vec<_>, ConductionError>>()?;
+        let mut total = vec![0.0; materials];
+        for sums in slices {
+            total.resize(total.len().max(sums.len()), 0.0);
+            total.iter_mut().zip(sums).for_each(|(t, s)| *t += s);
         }
-        sums
+        Ok(total)
     }
 
     /// Volume of the cells that are not void, mm^3.

@@ -71,14 +71,14 @@ impl Multigrid {
             }
             let Some(chosen) = steps(fine.cells(), fine.collapsed(), edges) else { break };
             let coarse = coarsen(fine, chosen, go_on)?;
-            let stencil = coarse.stencil();
+            let stencil = coarse.stencil(go_on)?;
             let transfer = Transfer::new(fine.nodes(), coarse.nodes(), chosen);
             for (edge, step) in edges.iter_mut().zip(chosen) {
                 if step == super::galerkin::Step::Halve {
                     *edge *= 2.0;
                 }
             }
-            let largest_eigenvalue = power_iteration(&stencil);
+            let largest_eigenvalue = power_iteration(&stencil, go_on)?;
             levels.push(Level { stencil, transfer, largest_eigenvalue });
             elements = Some(coarse);
         }
@@ -88,8 +88,13 @@ impl Multigrid {
         );
         let mut work = vec![Work::new(mesh.nodes())];
         work.extend(levels.iter().map(|l| Work::new(l.stencil.inverse_diagonal().len())));
-        let bricks = mesh.bricks().all();
-        let largest_eigenvalue = bricks.iter().map(largest).fold(1.0, f64::max);
+        let mut largest_eigenvalue = 1.0_f64;
+        for some in mesh.bricks().all().chunks(BRICKS) {
+            if !go_on() {
+                return None;
+            }
+            largest_eigenvalue = some.iter().map(largest).fold(largest_eigenvalue, f64::max);
+        }
         Some(Self { levels, largest_eigenvalue, coarsest, work })
     }
 
@@ -114,25 +119,31 @@ impl Multigrid {
             inverse_diagonal: operator.inverse_diagonal(),
             largest: self.largest_eigenvalue,
         };
-        smoother.start(residual, out, own);
+        smoother.start(residual, out, own, go_on);
         if !go_on() {
             return;
         }
         if let Some((level, rest)) = self.levels.split_first() {
             operator.apply(out, &mut own.product);
+            if !go_on() {
+                return;
+            }
             difference(residual, &own.product, &mut own.residual);
             level.transfer.restrict(&own.residual, &mut below[0].residual);
-            cycle(level, rest, &self.coarsest, below);
+            cycle(level, rest, &self.coarsest, below, go_on);
+            if !go_on() {
+                return;
+            }
             level.transfer.prolong(&below[0].correction, operator.inverse_diagonal(), out);
         }
         if go_on() {
-            smoother.improve(residual, out, own);
+            smoother.improve(residual, out, own, go_on);
         }
     }
 }
 
 /// One V-cycle from `level` down; takes and leaves its vectors in `work`.
-fn cycle(level: &Level, rest: &[Level], coarsest: &Dense, work: &mut [Work]) {
+fn cycle(level: &Level, rest: &[Level], coarsest: &Dense, work: &mut [Work], go_on: &dyn Fn() -> bool) {
     let Some((own, below)) = work.split_first_mut() else { return };
     let residual = std::mem::take(&mut own.residual);
     let mut correction = std::mem::take(&mut own.correction);
@@ -143,15 +154,15 @@ fn cycle(level: &Level, rest: &[Level], coarsest: &Dense, work: &mut [Work]) {
             inverse_diagonal: level.stencil.inverse_diagonal(),
             largest: level.largest_eigenvalue,
         };
-        smoother.start(&residual, &mut correction, own);
+        smoother.start(&residual, &mut correction, own, go_on);
         level.stencil.apply(&correction, &mut own.product);
         let mut rest_residual = std::mem::take(&mut own.direction);
         difference(&residual, &own.product, &mut rest_residual);
         next.transfer.restrict(&rest_residual, &mut below[0].residual);
         own.direction = rest_residual;
-        cycle(next, further, coarsest, below);
+        cycle(next, further, coarsest, below, go_on);
         next.transfer.prolong(&below[0].correction, level.stencil.inverse_diagonal(), &mut correction);
-        smoother.improve(&residual, &mut correction, own);
+        smoother.improve(&residual, &mut correction, own, go_on);
     } else {
         coarsest.solve(&residual, &mut correction);
     }
@@ -168,6 +179,9 @@ fn difference(a: &[f64], b: &[f64], out: &mut [f64]) {
     });
 }
 
+/// Bricks after which it is asked whether to go on.
+const BRICKS: usize = 4096;
+
 /// Entries that are handled together where rows do not matter.
 const ROW: usize = 1024;
 
@@ -180,22 +194,26 @@ struct Chebyshev<'a> {
 
 impl Chebyshev<'_> {
     /// Smooths from zero: `u` is overwritten.
-    fn start(&self, residual: &[f64], u: &mut [f64], work: &mut Work) {
+    fn start(&self, residual: &[f64], u: &mut [f64], work: &mut Work, go_on: &dyn Fn() -> bool) {
         u.fill(0.0);
-        self.steps(residual, u, work, true);
+        self.steps(residual, u, work, true, go_on);
     }
 
     /// Smooths on.
-    fn improve(&self, residual: &[f64], u: &mut [f64], work: &mut Work) {
-        self.steps(residual, u, work, false);
+    fn improve(&self, residual: &[f64], u: &mut [f64], work: &mut Work, go_on: &dyn Fn() -> bool) {
+        self.steps(residual, u, work, false, go_on);
     }
 
-    fn steps(&self, rhs: &[f64], u: &mut [f64], work: &mut Work, from_zero: bool) {
+    fn steps(&self, rhs: &[f64], u: &mut [f64], work: &mut Work, from_zero: bool, go_on: &dyn Fn() -> bool) {
         let (middle, half) = (0.5 * self.largest * (1.0 + SMOOTHED), 0.5 * self.largest * (1.0 - SMOOTHED));
         let sigma = middle / half;
         let mut rho = 1.0 / sigma;
         let direction = &mut work.direction;
         for step in 0..DEGREE {
+            // Where it stops, what is left is not used.
+            if !go_on() {
+                return;
+            }
             if step > 0 || !from_zero {
                 (self.apply)(u, &mut work.product);
             } else {
@@ -229,8 +247,8 @@ impl Chebyshev<'_> {
     }
 }
 
-/// Largest eigenvalue of `D^-1 A`, slightly over-estimated.
-fn power_iteration(stencil: &Stencil) -> f64 {
+/// Largest eigenvalue of `D^-1 A`, slightly over-estimated; `None` where `go_on` says no.
+fn power_iteration(stencil: &Stencil, go_on: &(dyn Fn() -> bool + Sync)) -> Option<f64> {
     let inverse = stencil.inverse_diagonal();
     // Any start with all frequencies in it; the same on every machine.
     let mut state = 0x9E37_79B9_u32;
@@ -244,11 +262,14 @@ fn power_iteration(stencil: &Stencil) -> f64 {
     let mut product = vec![0.0; inverse.len()];
     let mut largest = 1.0_f64;
     for _ in 0..15 {
+        if !go_on() {
+            return None;
+        }
         stencil.apply(&v, &mut product);
         let energy: f64 = v.iter().zip(&product).map(|(v, p)| v * p).sum();
         let mass: f64 = v.iter().zip(inverse).filter(|(_, d)| **d > 0.0).map(|(v, d)| v * v / d).sum();
         if mass <= 0.0 {
-            return 1.0;
+            return Some(1.0);
         }
         largest = largest.max(energy / mass);
         let scale = 1.0 / mass.sqrt();
@@ -256,7 +277,7 @@ fn power_iteration(stencil: &Stencil) -> f64 {
             *v = d * p * scale;
         }
     }
-    1.15 * largest
+    Some(1.15 * largest)
 }
 
 /// A small matrix, factored; directions in which it vanishes are left out.

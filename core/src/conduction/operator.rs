@@ -7,13 +7,20 @@
 //! Every node gathers from the up to eight cells around it, row by row across the strip, so threads never write to the same
 //! place and the result does not depend on how work is shared among them. `d` is the lumped capacity of a time step.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use rayon::prelude::*;
 
+use super::ConductionError;
 use super::brick::Matrix;
 use super::mesh::{BrickMesh, VOID};
+use super::pcg::Watch;
 
 /// Below so many nodes threads cost more than they save.
 const SMALL: usize = 12_000;
+
+/// Lines of nodes after which it is asked whether to go on.
+const ASK_EVERY: usize = 64;
 
 /// Nodes that a thread takes at a time.
 const TASK: usize = 4_000;
@@ -51,21 +58,33 @@ pub struct Operator<'a> {
 impl<'a> Operator<'a> {
     /// The operator for the conductivities and, with a time step, the capacities per volume over it, a material each.
     /// `given` marks the nodes whose value is prescribed.
-    #[must_use]
-    pub fn new(mesh: &'a BrickMesh, conductivities: &[f64], capacities: &[f64], given: &'a [bool]) -> Self {
+    ///
+    /// # Errors
+    /// [`ConductionError::Cancelled`] where `watch` says so.
+    pub fn new(
+        mesh: &'a BrickMesh,
+        conductivities: &[f64],
+        capacities: &[f64],
+        given: &'a [bool],
+        watch: Watch<'_>,
+    ) -> Result<Self, ConductionError> {
         let value =
             |m: u16, values: &[f64]| if m == VOID { 0.0 } else { values.get(usize::from(m)).copied().unwrap_or(0.0) };
-        let conductivity: Vec<f64> = mesh.materials().iter().map(|m| value(*m, conductivities)).collect();
+        let conductivity: Vec<f64> = mesh.materials().par_iter().map(|m| value(*m, conductivities)).collect();
+        watch.at(0.0)?;
         let per_slice = mesh.cells()[1] * mesh.cells()[2];
         let across = mesh.cells()[2];
         let extent = mesh
             .materials()
-            .chunks(per_slice)
+            .par_chunks(per_slice)
             .map(|slice| {
-                let solid = || slice.iter().enumerate().filter(|(_, m)| **m != VOID).map(|(n, _)| n % across);
-                [solid().min().unwrap_or(0), solid().max().map_or(0, |last| last + 1)]
+                let rows = || slice.chunks(across);
+                let first = rows().filter_map(|row| row.iter().position(|m| *m != VOID)).min();
+                let last = rows().filter_map(|row| row.iter().rposition(|m| *m != VOID)).max();
+                [first.unwrap_or(0), last.map_or(0, |last| last + 1)]
             })
             .collect();
+        watch.at(0.0)?;
         let mut operator = Self {
             mesh,
             conductivity,
@@ -76,19 +95,20 @@ impl<'a> Operator<'a> {
             inverse_diagonal: Vec::new(),
         };
         if !capacities.is_empty() {
-            operator.shift = operator.gather(|i, k, j, a| {
+            operator.shift = operator.gather(watch, |i, k, j, a| {
                 value(mesh.materials()[operator.cell(i, k, j)], capacities) * mesh.bricks().at(i, k, j).volumes[a]
-            });
+            })?;
         }
-        let mut diagonal = operator.gather(|i, k, j, a| {
+        let mut diagonal = operator.gather(watch, |i, k, j, a| {
             operator.conductivity[operator.cell(i, k, j)] * mesh.bricks().at(i, k, j).conductance[9 * a]
-        });
+        })?;
+        watch.at(0.0)?;
         for (n, d) in diagonal.iter_mut().enumerate() {
             let full = *d + operator.shift.get(n).copied().unwrap_or(0.0);
             *d = if given[n] || full <= 0.0 { 0.0 } else { 1.0 / full };
         }
         operator.inverse_diagonal = diagonal;
-        operator
+        Ok(operator)
     }
 
     /// The mesh.
@@ -108,10 +128,21 @@ impl<'a> Operator<'a> {
     }
 
     /// Sums a quantity of the cells at every node.
-    fn gather(&self, f: impl Fn(usize, usize, usize, usize) -> f64 + Sync) -> Vec<f64> {
+    fn gather(
+        &self,
+        watch: Watch<'_>,
+        f: impl Fn(usize, usize, usize, usize) -> f64 + Sync,
+    ) -> Result<Vec<f64>, ConductionError> {
         let [slices, layers, across] = self.mesh.cells();
         let mut out = vec![0.0; self.mesh.nodes()];
+        let stopped = AtomicBool::new(false);
         for_rows(&mut out, across + 1, |line, row| {
+            if line.is_multiple_of(ASK_EVERY) && !watch.goes_on() {
+                stopped.store(true, Ordering::Relaxed);
+            }
+            if stopped.load(Ordering::Relaxed) {
+                return;
+            }
             let (plane, level) = (line / (layers + 1), line % (layers + 1));
             for (i, a) in neighbours(plane, slices) {
                 let [first, end] = self.extent[i];
@@ -123,7 +154,7 @@ impl<'a> Operator<'a> {
                 }
             }
         });
-        out
+        if stopped.into_inner() { Err(ConductionError::Cancelled) } else { Ok(out) }
     }
 
     /// `A u` at all nodes, given ones included: the flux that enters there.
@@ -164,9 +195,13 @@ impl<'a> Operator<'a> {
     /// Flux that the cells of every slice take from the plane of nodes before them: what flows through the slice, positive from
     /// the rim to the far end (where `u` falls).
     #[must_use]
-    pub fn slice_fluxes(&self, u: &[f64]) -> Vec<f64> {
+    ///
+    /// # Errors
+    /// [`ConductionError::Cancelled`] where `watch` says so.
+    pub fn slice_fluxes(&self, u: &[f64], watch: Watch<'_>) -> Result<Vec<f64>, ConductionError> {
         let [slices, layers, _] = self.mesh.cells();
         let through = |i: usize| {
+            watch.at(1.0)?;
             let mut total = 0.0;
             for k in 0..layers {
                 for j in self.extent[i][0]..self.extent[i][1] {
@@ -183,7 +218,7 @@ impl<'a> Operator<'a> {
                     total += kappa * flux;
                 }
             }
-            total
+            Ok(total)
         };
         (0..slices).into_par_iter().map(through).collect()
     }

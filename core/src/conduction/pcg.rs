@@ -141,6 +141,9 @@ pub(super) fn solve(
         let step = energy / curvature;
         combine(step, &direction, 1.0, u);
         combine(-step, &product, 1.0, &mut r);
+        if !go_on() {
+            return Err(ConductionError::Cancelled);
+        }
         system.precondition(&r, &mut z, &go_on);
         let next = dot(&r, &z);
         combine(1.0, &z, next / energy, &mut direction);

@@ -1,6 +1,6 @@
 //! Steady conduction: `div(kappa grad u) = 0` with values given at some nodes and flux entering at others.
 
-use super::components::{Components, NONE};
+use super::components::{ASK_EVERY, Components, NONE};
 use super::contrast;
 use super::mesh::{BrickMesh, VOID};
 use super::multigrid::Multigrid;
@@ -144,6 +144,7 @@ pub fn solve(
     check(mesh, boundary)?;
     memory::require(mesh, options.memory)?;
     let present = present(mesh, conductivities)?;
+    watch.at(0.0)?;
     refuse_isolated(mesh, conductivities, &boundary.given, options.quantity, watch)?;
     watch.at(0.0)?;
     let (least, most) = (present[0], present[present.len() - 1]);
@@ -152,6 +153,7 @@ pub fn solve(
     } else {
         contrast::solve(mesh, conductivities, &present, boundary, options, watch)?
     };
+    watch.at(1.0)?;
     steady.contrast = most / least;
     steady.imbalance = imbalance(mesh, boundary, &steady.slice_flux)?;
     Ok(steady)
@@ -209,7 +211,17 @@ fn refuse_isolated(
     }
     watch.at(0.0)?;
     let root = |cell: [usize; 3]| roots[mesh.cell_nodes(cell)[0]] as usize;
-    let Some(first) = cells().find(|cell| !held[root(*cell)]) else { return Ok(()) };
+    let mut first = None;
+    for (n, cell) in cells().enumerate() {
+        if n.is_multiple_of(ASK_EVERY) {
+            watch.at(0.0)?;
+        }
+        if !held[root(cell)] {
+            first = Some(cell);
+            break;
+        }
+    }
+    let Some(first) = first else { return Ok(()) };
     let voxels = cells().filter(|cell| root(*cell) == root(first)).count();
     let [slice, layer, across] = first.map(|i| i + 1);
     Err(ConductionError::Isolated { voxels, slice, layer, across, quantity })
@@ -248,7 +260,8 @@ fn together(
     watch: Watch<'_>,
 ) -> Result<Steady, ConductionError> {
     let scaled: Vec<f64> = conductivities.iter().map(|k| k / most).collect();
-    let mut system = Plain::new(Operator::new(mesh, &scaled, &[], &boundary.given), watch)?;
+    let mut system = Plain::new(Operator::new(mesh, &scaled, &[], &boundary.given, watch)?, watch)?;
+    watch.at(0.0)?;
     let mut values = boundary.values.clone();
     let mut load = vec![0.0; mesh.nodes()];
     system.operator.apply(&values, &mut load);
@@ -266,8 +279,10 @@ fn together(
             most,
         });
     }
+    watch.at(1.0)?;
     combine(1.0, &correction, 1.0, &mut values);
-    let slice_flux = system.operator.slice_fluxes(&values).iter().map(|f| f * most).collect();
+    let slice_flux = system.operator.slice_fluxes(&values, watch)?.iter().map(|f| f * most).collect();
+    watch.at(1.0)?;
     let levels = system.multigrid.levels();
     Ok(Steady { values, slice_flux, imbalance: 0.0, iterations, levels, contrast: 1.0, apart: None })
 }

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::mesh::{BrickMesh, Geometry, VOID};
+use super::pcg::Watch;
 use super::{ConductionError, memory};
 use crate::design::Design;
 use crate::elastica::forward::Equilibrium;
@@ -97,11 +98,25 @@ impl Strip {
     /// [`ConductionError::Memory`], [`ConductionError::NoShape`] for a strip that is not morphed, or whose morph was not
     /// found, [`ConductionError::Inverted`].
     pub fn new(design: &Design, model: Model, shape: Shape, elements: [usize; 3]) -> Result<Self, ConductionError> {
+        Self::new_unless(design, model, shape, elements, Watch::silent())
+    }
+
+    /// As [`Self::new`], unless it is cancelled.
+    ///
+    /// # Errors
+    /// Those of [`Self::new`], and [`ConductionError::Cancelled`].
+    pub fn new_unless(
+        design: &Design,
+        model: Model,
+        shape: Shape,
+        elements: [usize; 3],
+        watch: Watch<'_>,
+    ) -> Result<Self, ConductionError> {
         let input = design.input();
         let phases = design.phases().phases().to_vec();
         let (mesh, mixtures) = match model {
-            Model::Voxel => voxels(design, shape)?,
-            Model::Graded => graded(design, shape, elements)?,
+            Model::Voxel => voxels(design, shape, watch)?,
+            Model::Graded => graded(design, shape, elements, watch)?,
         };
         Ok(Self { model, shape, mesh, mixtures, phases, length_mm: input.strips.length_mm })
     }
@@ -169,13 +184,14 @@ impl Strip {
 
 type MeshAndMixtures = (BrickMesh, Vec<Vec<f64>>);
 
-fn voxels(design: &Design, shape: Shape) -> Result<MeshAndMixtures, ConductionError> {
+fn voxels(design: &Design, shape: Shape, watch: Watch<'_>) -> Result<MeshAndMixtures, ConductionError> {
     let grid = design.grid();
     let most = grid.half_widths().iter().copied().max().unwrap_or(1);
     let cells = [grid.slices(), grid.layers(), 2 * most];
     memory::require_cells(cells, None)?;
     let mut materials = Vec::with_capacity(cells.iter().product());
     for (i, half) in grid.half_widths().iter().enumerate() {
+        watch.at(0.0)?;
         for layer in grid.slice(i).chunks(2 * half) {
             let side = most - half;
             materials.extend(std::iter::repeat_n(VOID, side));
@@ -195,13 +211,14 @@ fn voxels(design: &Design, shape: Shape) -> Result<MeshAndMixtures, ConductionEr
     };
     let count = design.phases().phases().len();
     let pure = |p: usize| (0..count).map(|q| if p == q { 1.0 } else { 0.0 }).collect();
-    Ok((BrickMesh::new(cells, materials, geometry)?, (0..count).map(pure).collect()))
+    Ok((BrickMesh::new_unless(cells, materials, geometry, watch)?, (0..count).map(pure).collect()))
 }
 
 fn graded(
     design: &Design,
     shape: Shape,
     [along, across, through]: [usize; 3],
+    watch: Watch<'_>,
 ) -> Result<MeshAndMixtures, ConductionError> {
     let strips = &design.input().strips;
     let cells = [along, through, across];
@@ -215,6 +232,7 @@ fn graded(
     };
     let mut positions = Vec::with_capacity((along + 1) * (through + 1) * (across + 1));
     for i in 0..=along {
+        watch.at(0.0)?;
         let s = strips.length_mm * i as f64 / along as f64;
         let (width, _) = design.width_and_modulus(s);
         let [x, z, inclination] = path.map_or([s, 0.0, 0.0], |shape| section(shape, s));
@@ -235,7 +253,7 @@ fn graded(
         })
         .collect();
     let materials = (0..along).flat_map(|i| std::iter::repeat_n(i as u16, through * across)).collect();
-    Ok((BrickMesh::new(cells, materials, Geometry::Free(positions))?, mixtures))
+    Ok((BrickMesh::new_unless(cells, materials, Geometry::Free(positions), watch)?, mixtures))
 }
 
 fn section(shape: &Equilibrium, s: f64) -> [f64; 3] {

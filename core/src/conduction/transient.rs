@@ -156,7 +156,7 @@ pub fn integrate(
     let mesh = problem.mesh;
     let n = mesh.nodes();
     let most = problem.conductivities.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-    let stiff = Operator::new(mesh, problem.conductivities, &[], &problem.boundary.given);
+    let stiff = Operator::new(mesh, problem.conductivities, &[], &problem.boundary.given, watch)?;
     let mut effort = Effort::default();
     let (mut time, mut step) = (0.0, options.first_step);
     let mut stage: Option<Stage<'_>> = None;
@@ -274,7 +274,7 @@ impl<'a> Stage<'a> {
                 (both.iter().map(|k| k / unit).collect(), Vec::new(), unit)
             }
         };
-        let operator = Operator::new(mesh, &conductivities, &capacities, &problem.boundary.given);
+        let operator = Operator::new(mesh, &conductivities, &capacities, &problem.boundary.given, watch)?;
         let mut system = Plain::new(operator, watch)?;
         let electrode = match problem.drive {
             Drive::Boundary => None,

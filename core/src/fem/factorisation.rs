@@ -20,6 +20,7 @@ use faer::{Conj, MatMut, Par, Side, Spec};
 
 use super::FemError;
 use super::pattern::Pattern;
+use crate::progress::Cancelled;
 
 /// Residual of a linear solution, relative to the right-hand side, above which factors count as useless.
 const USELESS: f64 = 1e-3;
@@ -102,19 +103,34 @@ impl Factorisation {
     }
 
     /// Factors a tangent and solves `K x = right`; `None` where it is singular.
-    pub fn solve(&mut self, pattern: &Pattern, tangent: &[f64], right: &[f64]) -> Option<Vec<f64>> {
+    ///
+    /// # Errors
+    /// [`FemError::Cancelled`].
+    pub fn solve(
+        &mut self,
+        pattern: &Pattern,
+        tangent: &[f64],
+        right: &[f64],
+        cancelled: Cancelled<'_>,
+    ) -> Result<Option<Vec<f64>>, FemError> {
         if self.factor(pattern, tangent)
-            && let Some(x) = self.refined(pattern, tangent, right)
+            && let Some(x) = self.refined(pattern, tangent, right, cancelled)?
         {
-            return Some(x);
+            return Ok(Some(x));
+        }
+        if cancelled() {
+            return Err(FemError::Cancelled);
         }
         self.factor_with_pivots(pattern, tangent);
-        self.refined(pattern, tangent, right)
+        self.refined(pattern, tangent, right, cancelled)
     }
 
     /// Solves `K x = right` for a tangent near the one that was factored, by conjugate gradients with the old factors as
     /// preconditioner, to a residual of `tolerance` times the right-hand side. `None` where there are no definite factors,
     /// the tangent is not definite, or `most` steps do not suffice.
+    ///
+    /// # Errors
+    /// [`FemError::Cancelled`].
     pub fn solve_nearby(
         &mut self,
         pattern: &Pattern,
@@ -122,9 +138,10 @@ impl Factorisation {
         right: &[f64],
         tolerance: f64,
         most: usize,
-    ) -> Option<Vec<f64>> {
+        cancelled: Cancelled<'_>,
+    ) -> Result<Option<Vec<f64>>, FemError> {
         if !self.definite {
-            return None;
+            return Ok(None);
         }
         let wanted = tolerance * norm(right);
         let mut x = vec![0.0; right.len()];
@@ -132,6 +149,9 @@ impl Factorisation {
         let mut direction: Vec<f64> = Vec::new();
         let mut before = 1.0;
         for step in 0..most {
+            if cancelled() {
+                return Err(FemError::Cancelled);
+            }
             let mut preconditioned = residual.clone();
             self.apply(&mut preconditioned);
             let now = dot(&residual, &preconditioned);
@@ -142,29 +162,41 @@ impl Factorisation {
                 direction.iter_mut().zip(&preconditioned).for_each(|(d, p)| *d = p + kept * *d);
             }
             before = now;
+            if cancelled() {
+                return Err(FemError::Cancelled);
+            }
             let product = pattern.multiply(tangent, &direction);
             let curvature = dot(&direction, &product);
             // Not a number fails as well.
             if !(curvature > 0.0 && now > 0.0) {
-                return None;
+                return Ok(None);
             }
             let length = now / curvature;
             x.iter_mut().zip(&direction).for_each(|(x, d)| *x += length * d);
             residual.iter_mut().zip(&product).for_each(|(r, p)| *r -= length * p);
             if norm(&residual) <= wanted {
-                return Some(x);
+                return Ok(Some(x));
             }
         }
-        None
+        Ok(None)
     }
 
     /// Solves with the factors there are, and refines; `None` where the residual stays large.
-    fn refined(&mut self, pattern: &Pattern, tangent: &[f64], right: &[f64]) -> Option<Vec<f64>> {
+    fn refined(
+        &mut self,
+        pattern: &Pattern,
+        tangent: &[f64],
+        right: &[f64],
+        cancelled: Cancelled<'_>,
+    ) -> Result<Option<Vec<f64>>, FemError> {
         let size = norm(right);
         let mut x = vec![0.0; right.len()];
         let mut residual = right.to_vec();
         let mut error = 1.0;
         for _ in 0..REFINEMENTS {
+            if cancelled() {
+                return Err(FemError::Cancelled);
+            }
             self.apply(&mut residual);
             x.iter_mut().zip(&residual).for_each(|(x, d)| *x += d);
             let product = pattern.multiply(tangent, &x);
@@ -174,7 +206,7 @@ impl Factorisation {
                 break;
             }
         }
-        (error <= USELESS).then_some(x)
+        Ok((error <= USELESS).then_some(x))
     }
 
     /// Unpivoted factors; `false` where a pivot vanished.

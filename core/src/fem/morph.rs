@@ -103,12 +103,14 @@ pub fn solve(
     if !progress(0.0) {
         return Err(FemError::Cancelled);
     }
-    let mut solver = Solver::new(model, lift, limit)?;
+    let mut solver = Solver::new(model, lift, limit, &|| !progress(0.0))?;
     let mut tried = Vec::new();
     let mut direct = None;
     if !options.from_flat {
         match straight(model, path, &mut solver, progress) {
-            Ok((state, found)) if found.negative == 0 => return Ok(finish(model, path, &solver, state, found, 1)),
+            Ok((state, found)) if found.negative == 0 => {
+                return finish(model, path, &solver, state, found, 1, progress);
+            }
             Ok(unstable) => direct = Some(unstable),
             Err(Stop::Diverged { iterations, residual }) => {
                 tried.push(format!("the design's prediction ({iterations} iterations, residual {residual:.1e})"));
@@ -118,12 +120,12 @@ pub fn solve(
     }
     tried.push(format!("steps from flat, halved down to {SMALLEST_STEP:.4} of the path"));
     match (follow(model, path, &mut solver, progress), direct) {
-        (Ok((state, found, steps)), None) => Ok(finish(model, path, &solver, state, found, steps)),
+        (Ok((state, found, steps)), None) => finish(model, path, &solver, state, found, steps, progress),
         (Ok((state, found, steps)), Some(_)) if found.negative == 0 => {
-            Ok(finish(model, path, &solver, state, found, steps))
+            finish(model, path, &solver, state, found, steps, progress)
         }
         (Err(Stop::Final(FemError::Cancelled)), _) => Err(FemError::Cancelled),
-        (_, Some((state, found))) => Ok(finish(model, path, &solver, state, found, 1)),
+        (_, Some((state, found))) => finish(model, path, &solver, state, found, 1, progress),
         (Err(Stop::Final(FemError::Diverged { fraction, iterations, residual, .. })), None) => {
             Err(FemError::Diverged { fraction, iterations, residual, tried: tried.join("; ") })
         }
@@ -248,14 +250,15 @@ fn finish(
     mut state: State,
     found: Equilibrium,
     steps: usize,
-) -> MorphSolution {
+    progress: Share<'_>,
+) -> Result<MorphSolution, FemError> {
     let length = path.guide().length();
     let ends = path.guide().ends(1.0);
-    let elements = ElementResults::of(model, &mut state);
+    let elements = ElementResults::of(model, &state, &|| !progress(1.0))?;
     if !model.law.needs_modes() {
         state.modes = Vec::<[f64; MODES]>::new();
     }
-    MorphSolution {
+    Ok(MorphSolution {
         midline: midline(&model.mesh, &state.displacements),
         reactions: reactions(&model.mesh, &state.displacements, &found.forces, length - ends.span),
         elements,
@@ -265,5 +268,5 @@ fn finish(
         negative: found.negative,
         unknowns: solver.unknowns(),
         state,
-    }
+    })
 }

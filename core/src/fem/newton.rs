@@ -74,9 +74,12 @@ impl<'a> Solver<'a> {
     /// bytes.
     ///
     /// # Errors
-    /// [`FemError::Memory`], [`FemError::Sparse`].
-    pub fn new(model: &'a Model, lift: bool, limit: Option<u64>) -> Result<Self, FemError> {
-        let pattern = Pattern::new(&model.mesh, lift);
+    /// [`FemError::Memory`], [`FemError::Sparse`], [`FemError::Cancelled`].
+    pub fn new(model: &'a Model, lift: bool, limit: Option<u64>, cancelled: Cancelled<'_>) -> Result<Self, FemError> {
+        let pattern = Pattern::new(&model.mesh, lift, cancelled)?;
+        if cancelled() {
+            return Err(FemError::Cancelled);
+        }
         let factors = Factorisation::new(&pattern, limit)?;
         let tangent = vec![0.0; pattern.rows.len()];
         Ok(Self { model, pattern, factors, tangent })
@@ -125,13 +128,14 @@ impl<'a> Solver<'a> {
             let nearby = if near && !close {
                 None
             } else {
-                self.factors.solve_nearby(&self.pattern, &self.tangent, &residual, NEARBY_TOLERANCE, NEARBY_STEPS)
+                let (factors, tolerance) = (&mut self.factors, NEARBY_TOLERANCE);
+                factors.solve_nearby(&self.pattern, &self.tangent, &residual, tolerance, NEARBY_STEPS, cancelled)?
             };
             let solved = match nearby {
                 Some(change) => Some(change),
                 None => {
                     close = near;
-                    self.factors.solve(&self.pattern, &self.tangent, &residual)
+                    self.factors.solve(&self.pattern, &self.tangent, &residual, cancelled)?
                 }
             };
             let Some(mut change) = solved else {

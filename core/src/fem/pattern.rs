@@ -3,8 +3,10 @@
 //! Nodes between the end planes have three unknowns each. The nodes of the end planes move with their rigid section; a
 //! hub that is free to rise adds one unknown, numbered last, that all nodes of the hub's plane share.
 
+use super::FemError;
 use super::mesh::Mesh;
 use super::ordering::nested_dissection;
+use crate::progress::{Cancelled, stops_at};
 
 /// What a node's displacement depends on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,9 +43,13 @@ fn pair(a: usize, b: usize) -> usize {
 
 impl Pattern {
     /// The pattern of a mesh whose end planes are prescribed, but for the hub's height where `lift` says so.
-    #[must_use]
-    pub fn new(mesh: &Mesh, lift: bool) -> Self {
+    ///
+    /// # Errors
+    /// [`FemError::Cancelled`].
+    pub fn new(mesh: &Mesh, lift: bool, cancelled: Cancelled<'_>) -> Result<Self, FemError> {
+        let go_on = || if cancelled() { Err(FemError::Cancelled) } else { Ok(()) };
         let order = nested_dissection(mesh);
+        go_on()?;
         let mut nodes = vec![NodeUnknowns::Fixed; mesh.nodes.len()];
         let mut rank = vec![u32::MAX; mesh.nodes.len()];
         for (i, node) in order.iter().enumerate() {
@@ -56,11 +62,15 @@ impl Pattern {
             }
         }
         let later = later_neighbours(mesh, &rank, order.len());
+        go_on()?;
         let total = 3 * order.len() + usize::from(lift);
         let touches_lift = lifted(mesh, &nodes, &rank, order.len());
         let mut columns = Vec::with_capacity(total + 1);
         let mut rows = Vec::with_capacity(9 * later.places.len() + 6 * order.len());
         for i in 0..order.len() {
+            if stops_at(i, cancelled) {
+                return Err(FemError::Cancelled);
+            }
             for k in 0..3 {
                 columns.push(rows.len());
                 rows.extend(3 * i + k..3 * i + 3);
@@ -78,8 +88,14 @@ impl Pattern {
             rows.push(total - 1);
         }
         columns.push(rows.len());
-        let neighbours = mesh.elements.iter().map(|element| element_pairs(element, &rank, &later)).collect();
-        Self { nodes, columns, rows, neighbours }
+        let mut neighbours = Vec::with_capacity(mesh.elements.len());
+        for (i, element) in mesh.elements.iter().enumerate() {
+            if stops_at(i, cancelled) {
+                return Err(FemError::Cancelled);
+            }
+            neighbours.push(element_pairs(element, &rank, &later));
+        }
+        Ok(Self { nodes, columns, rows, neighbours })
     }
 
     /// Number of unknowns.

@@ -3,10 +3,15 @@
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
+use super::FemError;
 use super::assembly::{Forces, State};
 use super::element::{COMPONENTS, MODES, NODES, PAIRS, Voigt};
 use super::mesh::Mesh;
 use super::model::Model;
+use crate::progress::Cancelled;
+
+/// Elements after which it is asked whether to go on.
+const ASK_EVERY: usize = 512;
 
 /// What an end of the strip is held by, in the signs of the elastica.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -81,28 +86,33 @@ pub struct ElementResults {
 }
 
 impl ElementResults {
-    pub(super) fn of(model: &Model, state: &mut State) -> Self {
+    pub(super) fn of(model: &Model, state: &State, cancelled: Cancelled<'_>) -> Result<Self, FemError> {
         let count = model.mesh.elements.len();
+        let mean = |values: &[Voigt; NODES]| -> Voigt {
+            std::array::from_fn(|k| values.iter().map(|v| v[k]).sum::<f64>() / NODES as f64)
+        };
         let of = |i: usize| {
+            if i.is_multiple_of(ASK_EVERY) && cancelled() {
+                return None;
+            }
             let u = state.of_element(&model.mesh.elements[i]);
             let mut modes = state.modes.get(i).copied().unwrap_or([0.0; MODES]);
-            model.brick(i).recover(model.law, &u, &mut modes)
+            let points = model.brick(i).recover(model.law, &u, &mut modes);
+            let largest = points.strains.iter().map(largest_principal).fold(f64::MIN, f64::max);
+            Some((mean(&points.strains), mean(&points.stresses), largest))
         };
-        let found: Vec<_> = (0..count).into_par_iter().map(of).collect();
+        let found = (0..count).into_par_iter().map(of).collect::<Option<Vec<_>>>().ok_or(FemError::Cancelled)?;
         let mut results = Self {
             strains: Vec::with_capacity(count),
             stresses: Vec::with_capacity(count),
             principal_strains: Vec::with_capacity(count),
         };
-        for points in found {
-            let mean = |values: &[Voigt; NODES]| -> Voigt {
-                std::array::from_fn(|k| values.iter().map(|v| v[k]).sum::<f64>() / NODES as f64)
-            };
-            results.strains.push(mean(&points.strains));
-            results.stresses.push(mean(&points.stresses));
-            results.principal_strains.push(points.strains.iter().map(largest_principal).fold(f64::MIN, f64::max));
+        for (strain, stress, largest) in found {
+            results.strains.push(strain);
+            results.stresses.push(stress);
+            results.principal_strains.push(largest);
         }
-        results
+        Ok(results)
     }
 
     /// Largest principal strain of every phase; `None` for phases without an element.

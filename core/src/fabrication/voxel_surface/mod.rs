@@ -211,11 +211,12 @@ impl<'a> VoxelSurface<'a> {
         let all: Vec<usize> = (0..self.slabs()).collect();
         let slab = self.grid.phases().len() / self.slabs().max(1);
         for batch in all.chunks((BATCH_VOXELS / slab.max(1)).clamp(2, 16)) {
-            if cancelled() {
-                return Err(SurfaceError::Cancelled.into());
-            }
-            let done: Vec<T> = batch.par_iter().map(|index| work(&self.slab(*index))).collect();
+            let one = |index: &usize| (!cancelled()).then(|| work(&self.slab(*index)));
+            let done = batch.par_iter().map(one).collect::<Option<Vec<T>>>().ok_or(SurfaceError::Cancelled)?;
             for (index, result) in batch.iter().zip(done) {
+                if cancelled() {
+                    return Err(SurfaceError::Cancelled.into());
+                }
                 take(*index, result)?;
             }
         }
