@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use voxelastica_core::input::FabricationKind;
+use voxelastica_core::sweep::run::Batch;
 
 /// Target shape in, finite-element decks of a flat, modulus-graded flower out.
 #[derive(Debug, Parser)]
@@ -42,6 +43,8 @@ pub enum Command {
     Conduct(Box<ConductOptions>),
     /// Press the hub of a closed dome down: force-displacement curve, rigidity, energy.
     Indent(IndentOptions),
+    /// Compute many designs: a grid or a Latin hypercube over keys of a design file, in one table.
+    Sweep(SweepOptions),
     /// Test every layout of a small cell of two phases: moduli along x, y and z against their bounds.
     Micromechanics(MicromechanicsOptions),
     /// List the materials of the library.
@@ -265,6 +268,48 @@ pub struct IndentOptions {
     /// Folder to write into [default: the design's].
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
+}
+
+/// Options of `sweep`.
+#[derive(Debug, Args)]
+pub struct SweepOptions {
+    /// The sweep file (TOML, or JSON with the same keys).
+    pub file: PathBuf,
+    /// Folder to write into [default: out/NAME].
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    /// Points at once [default: all cores].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Print what there is to do, as JSON, and compute nothing that is kept.
+    #[arg(long, conflicts_with_all = ["batch", "gather", "record"])]
+    pub plan: bool,
+    /// Compute the I-th of N parts only and write no table.
+    #[arg(long, value_name = "I/N", value_parser = batch, conflicts_with_all = ["gather", "record"])]
+    pub batch: Option<Batch>,
+    /// Compute nothing: gather what all parts have computed.
+    #[arg(long, conflicts_with = "record")]
+    pub gather: bool,
+    /// Take results of another solver: one JSON object a line, {"point": 3, "outputs": {...}} or {"point": 3, "failure": "..."}.
+    #[arg(long, value_name = "FILE")]
+    pub record: Option<PathBuf>,
+    /// Gather although points are missing.
+    #[arg(long)]
+    pub partial: bool,
+    /// The CalculiX program, for the model that needs it.
+    #[arg(long, value_name = "PROGRAM", default_value = "ccx")]
+    pub ccx: PathBuf,
+    /// Compute however many points there are and however long it takes.
+    #[arg(long)]
+    pub yes: bool,
+}
+
+fn batch(text: &str) -> Result<Batch, String> {
+    let numbers = text.split_once('/').and_then(|(i, n)| Some((i.parse::<u64>().ok()?, n.parse::<u64>().ok()?)));
+    match numbers {
+        Some((index, count)) if (1..=count).contains(&index) => Ok(Batch { index, count }),
+        _ => Err("it must be I/N with I from 1 to N, such as 3/10".to_owned()),
+    }
 }
 
 /// Models that can be pressed.

@@ -72,6 +72,7 @@ pub mod report;
 pub mod results;
 pub mod solver;
 pub mod surface;
+pub mod sweep;
 pub mod target;
 pub mod voxel;
 

@@ -7,6 +7,7 @@ pub mod fabricate;
 pub mod indent;
 pub mod lists;
 pub mod micromechanics;
+pub mod sweep;
 pub mod verify;
 
 use std::path::Path;

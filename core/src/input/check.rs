@@ -160,7 +160,7 @@ pub(super) fn defaults(table: &str) -> Map<String, Value> {
 }
 
 /// Checks one value against its parameter's type and range.
-pub(super) fn check_value(parameter: &Parameter, path: &str, value: &Value) -> Result<(), InputError> {
+pub(crate) fn check_value(parameter: &Parameter, path: &str, value: &Value) -> Result<(), InputError> {
     let unit = parameter.unit.map(|u| format!(" {u}")).unwrap_or_default();
     let wrong = |problem: String| Err(InputError::new(path, show(value), problem).help(parameter.description));
     match (&parameter.kind, value) {

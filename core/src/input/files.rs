@@ -135,7 +135,7 @@ fn hex(digest: &[u8]) -> String {
     digest.iter().map(|b| format!("{b:02x}")).collect()
 }
 
-fn read_text(path: &Path, largest: u64) -> Result<String, String> {
+pub(crate) fn read_text(path: &Path, largest: u64) -> Result<String, String> {
     String::from_utf8(read_bytes(path, largest, &never)?).map_err(|error| {
         let line = 1 + error.as_bytes()[..error.utf8_error().valid_up_to()].iter().filter(|b| **b == b'\n').count();
         format!("line {line} is not UTF-8 text")

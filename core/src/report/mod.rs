@@ -18,6 +18,7 @@ mod key_numbers;
 pub mod page;
 mod palette;
 mod svg;
+pub mod sweep;
 mod tables;
 mod text;
 pub mod unit_cells;

@@ -20,8 +20,10 @@ use crate::design::{Design, STATIONS};
 use crate::input::{Bending, IndentationInput};
 use crate::progress::Share;
 
+/// Stations of the profile in a link.
+const STRIDE: usize = 4;
 /// Links of the chain.
-const LINKS: usize = (STATIONS - 1) / 2;
+const LINKS: usize = (STATIONS - 1) / STRIDE;
 /// Parts into which a step is cut at most where Newton's method fails.
 const SMALLEST_PART: f64 = 1.0 / 64.0;
 /// Steps to the thickness where only the rigidity is asked for.
@@ -81,7 +83,7 @@ impl<'a> Run<'a> {
         };
         let forces = design.forces();
         let guess = Shape {
-            inclination: (0..LINKS).map(|j| profile.inclination[2 * j + 1]).collect(),
+            inclination: (0..LINKS).map(|j| profile.inclination[STRIDE * j + STRIDE / 2]).collect(),
             horizontal: forces.horizontal,
             vertical: forces.vertical,
             contact: Vec::new(),
@@ -203,15 +205,14 @@ fn stiffness(design: &Design) -> Vec<f64> {
     let profile = design.profile();
     let third = design.input().strips.thickness_mm.powi(3) / 12.0;
     let flexibility = |i: usize| 1.0 / (third * profile.width[i] * profile.modulus_mpa[i]);
-    let last = 2 * LINKS;
+    // Trapezoidal rule over the half links beside the node.
+    let mean = |from: usize, to: usize| {
+        let inner: f64 = (from + 1..to).map(flexibility).sum();
+        (0.5 * (flexibility(from) + flexibility(to)) + inner) / (to - from) as f64
+    };
     let node = |i: usize| {
-        let i = 2 * i;
-        let mean = match i {
-            0 => 0.5 * (flexibility(0) + flexibility(1)),
-            i if i == last => 0.5 * (flexibility(last) + flexibility(last - 1)),
-            i => (flexibility(i - 1) + 2.0 * flexibility(i) + flexibility(i + 1)) / 4.0,
-        };
-        1.0 / mean
+        let (at, half) = (STRIDE * i, STRIDE / 2);
+        1.0 / mean(at.saturating_sub(half), (at + half).min(STRIDE * LINKS))
     };
     (0..=LINKS).map(node).collect()
 }
