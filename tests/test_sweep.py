@@ -163,17 +163,29 @@ def test_results_of_another_solver_are_taken_in(program: Path, tmp_path: Path) -
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ('[[axes]]\nkey = "target.aspect_rato"\nvalues = [1.0]\n', ["sweep.toml:3", "aspect_rato", "target.aspect_ratio"]),
-        ('[[axes]]\nkey = "target.aspect_ratio"\nfrom = 1.0\nto = 1.0\ncount = 3\n', ["sweep.toml:5", "axes.0.to", "empty"]),
+        (
+            '[[axes]]\nkey = "target.aspect_rato"\nvalues = [1.0]\n',
+            ["sweep.toml:3", "aspect_rato", "target.aspect_ratio"],
+        ),
+        (
+            '[[axes]]\nkey = "target.aspect_ratio"\nfrom = 1.0\nto = 1.0\ncount = 3\n',
+            ["sweep.toml:5", "axes.0.to", "empty"],
+        ),
         ('[[axes]]\nkey = "target.aspect_ratio"\nfrom = 1.0\nto = 2.0\n', ["count"]),
         ('[[axes]]\nkey = "target.aspect_ratio"\nvalues = []\n', ["needs a value"]),
         ('[[axes]]\nkey = "target.aspect_ratio"\nvalues = [-1.0]\n', ["-1", "target.aspect_ratio"]),
         ('[[axes]]\nkey = "target.file"\nvalues = ["a.obj"]\n', ["does not apply"]),
         ('model = "magic"\n[[axes]]\nkey = "strips.count"\nvalues = [6]\n', ["magic"]),
-        ('outputs = ["contrst"]\n[[axes]]\nkey = "strips.count"\nvalues = [6]\n', ["sweep.toml:2", "contrst", "contrast"]),
+        (
+            'outputs = ["contrst"]\n[[axes]]\nkey = "strips.count"\nvalues = [6]\n',
+            ["sweep.toml:2", "contrst", "contrast"],
+        ),
         ('outputs = ["rigidity_n_mm"]\n[[axes]]\nkey = "strips.count"\nvalues = [6]\n', ["no such figure"]),
         ("axis = 3\naxes = []\n", ["axis", "axes"]),
-        ('[[axes]]\nkey = "strips.count"\nvalues = [6]\n[[plots]]\nx = "a"\ny = "contrast"\n', ["plots.0.x", "no such column"]),
+        (
+            '[[axes]]\nkey = "strips.count"\nvalues = [6]\n[[plots]]\nx = "a"\ny = "contrast"\n',
+            ["plots.0.x", "no such column"],
+        ),
     ],
 )
 def test_a_wrong_sweep_names_file_key_and_value(program: Path, tmp_path: Path, text: str, says: list[str]) -> None:
@@ -187,7 +199,10 @@ def test_a_wrong_sweep_names_file_key_and_value(program: Path, tmp_path: Path, t
 def test_ten_million_points_are_estimated_and_refused(program: Path, tmp_path: Path) -> None:
     axes = "".join(
         f'[[axes]]\nkey = "{key}"\nfrom = {low}\nto = {high}\ncount = {count}\n'
-        for key, low, high, count in [("target.aspect_ratio", 0.5, 2.0, 10000), ("strips.hub_radius_mm", 5.0, 20.0, 1000)]
+        for key, low, high, count in [
+            ("target.aspect_ratio", 0.5, 2.0, 10000),
+            ("strips.hub_radius_mm", 5.0, 20.0, 1000),
+        ]
     )
     result = run("sweep", sweep(tmp_path, axes), "-o", tmp_path / "out")
     assert result.code == 2

@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from .inputs import mechanics
 from .job import Progress
+from .library import api
 
 
 def destination(folder: str, name: str, saved: bool) -> Path:
@@ -50,6 +52,70 @@ def verified(design: Any, model: str, solver: str, ccx: str, progress: Progress)
         "mechanics": mechanics(design.input),
     }
     return record
+
+
+def refined(design: Any, iterations: int, progress: Progress) -> dict[str, Any]:
+    """Corrects a design by what its voxels really do; what an object stores of it."""
+    plain = uncorrected(design)
+    found = plain.refine(iterations, progress=progress)
+    summary = found.summary["refinement"]
+    return {"mechanics": mechanics(plain.input), "refine": found.input["refine"], **summary}
+
+
+def uncorrected(design: Any) -> Any:
+    """A design without a correction."""
+    keys = {key: value for key, value in design.input.items() if key != "refine"}
+    return api().Design.from_dict(keys) if "refine" in design.input else design
+
+
+def corrected(keys: dict[str, Any], plain: dict[str, Any], stored: str) -> dict[str, Any] | None:
+    """A form's design with the correction that an object stores; None where that was found for another design.
+
+    :param plain: the design's input without it, defaults filled in
+    """
+    record = json.loads(stored) if stored else {}
+    return {**keys, "refine": record["refine"]} if record.get("mechanics") == mechanics(plain) else None
+
+
+def refine_notes(record: dict[str, Any], design: dict[str, Any]) -> list[str]:
+    """What a refinement brought, line by line."""
+    notes = [
+        f"{record['error_before_percent']:.3f} % of the length off the target before",
+        f"{record['error_after_percent']:.3f} % after {record['solutions']} solutions",
+    ]
+    if "refine" not in design:
+        notes.append("The design was changed since and is not corrected: refine again.")
+    return notes
+
+
+def conducted(design: Any, flow: str, regime: str, shape: str, progress: Progress) -> dict[str, Any]:
+    """Heat or current through a spoke's voxels; what an object stores of it."""
+    case = design.conduct(flow, regime=regime, shape=shape, progress=progress)
+    record = {"flow": flow, "shape": shape, "mechanics": mechanics(design.input), "notes": case["notes"]}
+    steady = case["steady"]
+    record |= {key: steady[key] for key in ("effective_conductivity", "series_bound", "parallel_bound")}
+    if "transient" in case:
+        transient = case["transient"]
+        record["critical_time_s"] = transient["critical_times_s"][-1]
+        record["by_time"] = transient["effective_conductivities"][-1]
+    record["assumed"] = [f"{a['property']} of {a['material']}" for a in case["assumptions"]]
+    return record
+
+
+def conduct_notes(record: dict[str, Any], design: dict[str, Any]) -> list[str]:
+    """How a spoke conducts, line by line."""
+    unit = "W/(m K)" if record["flow"] == "heat" else "S/m"
+    notes = [
+        f"{record['effective_conductivity']:.4g} {unit} by steady {record['flow']}, {record['shape']}",
+        f"between {record['series_bound']:.4g} in series and {record['parallel_bound']:.4g} in parallel",
+    ]
+    if record.get("critical_time_s") is not None:
+        notes.append(f"critical time {record['critical_time_s']:.4g} s: {record['by_time']:.4g} {unit}")
+    if record["assumed"]:
+        notes.append(f"Assumed, not measured: {', '.join(record['assumed'])}.")
+    if record["mechanics"] != mechanics(design):
+        notes.append("The design was changed since: compute again.")
+    return notes + list(record["notes"])
 
 
 def verify_notes(record: dict[str, Any], design: dict[str, Any]) -> list[str]:

@@ -401,6 +401,43 @@ class VOXELASTICA_PT_verify(_Child, bpy.types.Panel):
             layout.prop(settings, "show_midline")
 
 
+class VOXELASTICA_PT_refine(_Child, bpy.types.Panel):
+    """Designs corrected by what their voxels do."""
+
+    bl_label = "Refine"
+    bl_order = 9
+
+    def show(self, layout: Any, context: bpy.types.Context, root: bpy.types.Object, settings: Any) -> None:
+        layout.prop(settings, "refine_iterations")
+        if not _running(layout, root, "Refinement"):
+            row = layout.row(align=True)
+            row.operator("voxelastica.refine", text="Refine", icon="MOD_SMOOTH")
+            if settings.refinement:
+                row.operator("voxelastica.unrefine", text="", icon="X")
+        if settings.refine_note:
+            say(layout, context, settings.refine_note, "ERROR")
+        if settings.refinement:
+            tell(layout, context, *results.refine_notes(json.loads(settings.refinement), _stored(settings)))
+
+
+class VOXELASTICA_PT_conduct(_Child, bpy.types.Panel):
+    """Heat and current."""
+
+    bl_label = "Conduct"
+    bl_order = 10
+
+    def show(self, layout: Any, context: bpy.types.Context, root: bpy.types.Object, settings: Any) -> None:
+        layout.prop(settings, "conduct_flow")
+        layout.prop(settings, "conduct_shape")
+        layout.prop(settings, "conduct_regime")
+        if not _running(layout, root, "Conduction"):
+            layout.operator("voxelastica.conduct", text="Conduct", icon="LIGHT_SUN")
+        if settings.conduct_note:
+            say(layout, context, settings.conduct_note, "ERROR")
+        if settings.conduction:
+            tell(layout, context, *results.conduct_notes(json.loads(settings.conduction), _stored(settings)))
+
+
 CLASSES = (
     VOXELASTICA_PT_main,
     VOXELASTICA_PT_target,
@@ -413,4 +450,6 @@ CLASSES = (
     VOXELASTICA_PT_decks,
     VOXELASTICA_PT_fabrication,
     VOXELASTICA_PT_verify,
+    VOXELASTICA_PT_refine,
+    VOXELASTICA_PT_conduct,
 )

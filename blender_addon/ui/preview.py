@@ -12,7 +12,7 @@ from typing import Any
 import bpy
 import numpy as np
 
-from ..logic import colours, designs, inputs, lines, surface, voxel_mesh
+from ..logic import colours, designs, inputs, lines, results, surface, voxel_mesh
 from ..logic.library import api
 from ..logic.messages import said
 from . import animation, fields, flower, form, legend, meshes, target_mesh
@@ -61,7 +61,10 @@ def _computed(root: bpy.types.Object) -> tuple[designs.Prepared, str]:
         raise ValueError(
             "Choose a mesh: an object in the scene that is a surface of revolution, such as half a UV sphere."
         )
-    return designs.computed(inputs.assemble(values, known())), hint
+    keys = inputs.assemble(values, known())
+    found = designs.computed(keys)
+    corrected = results.corrected(keys, found.input, settings.refinement)
+    return (designs.computed(corrected) if corrected else found), hint
 
 
 def _outdated(settings: Any) -> bool:

@@ -166,6 +166,28 @@ def _settings(groups: dict[str, type]) -> dict[str, Any]:
         ),
         "verification": StringProperty(description="What the solver found, as JSON"),
         "verify_note": StringProperty(name="Verification"),
+        "refine_iterations": IntProperty(
+            name="Corrections", description="Corrections at most", default=4, min=1, max=20
+        ),
+        "refinement": StringProperty(description="What finite elements corrected, as JSON"),
+        "refine_note": StringProperty(name="Refinement"),
+        "conduct_flow": EnumProperty(
+            name="Flow",
+            description="What flows from the rim to the hub",
+            items=[("heat", "Heat", "From a warm rim"), ("current", "Current", "Into the rim")],
+        ),
+        "conduct_shape": EnumProperty(
+            name="Shape",
+            description="In which shape it flows",
+            items=[("flat", "Flat", "As printed"), ("morphed", "Closed", "At the end of the morph")],
+        ),
+        "conduct_regime": EnumProperty(
+            name="Regime",
+            description="What of it is computed",
+            items=[("steady", "Steady", "The state in the long run"), ("both", "In Time", "The way there as well")],
+        ),
+        "conduction": StringProperty(description="How a spoke conducts, as JSON"),
+        "conduct_note": StringProperty(name="Conduction"),
         "show_midline": BoolProperty(
             name="Solver's Mid-Line",
             description="Lay the solver's mid-line over the target",

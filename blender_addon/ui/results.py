@@ -124,6 +124,91 @@ class VOXELASTICA_OT_verify(bpy.types.Operator):
         return {"FINISHED"}
 
 
+class VOXELASTICA_OT_refine(bpy.types.Operator):
+    """Let the finite elements correct the modulus until the voxels take the shape; every preview and export is then the corrected design"""
+
+    bl_idname = "voxelastica.refine"
+    bl_label = "Refine Voxelastica Design"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return _idle(cls, context)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        root = flower.shown(context)
+        settings = root.voxelastica
+        design, iterations = flower.prepared(root).design, settings.refine_iterations
+
+        def finish(root: bpy.types.Object, job: Job) -> None:
+            stored = root.voxelastica
+            stored.refine_note = _failed(job, "Refinement")
+            if not stored.refine_note:
+                stored.refinement = json.dumps(job.result)
+                preview.design_changed(root)
+
+        settings.refine_note = ""
+        job = jobs.start(root, "Refinement", lambda progress: results.refined(design, iterations, progress), finish)
+        if job.finished and job.error:
+            self.report({"ERROR"}, settings.refine_note)
+            return {"CANCELLED"}
+        return {"FINISHED"}
+
+
+class VOXELASTICA_OT_unrefine(bpy.types.Operator):
+    """Take the correction off again"""
+
+    bl_idname = "voxelastica.unrefine"
+    bl_label = "Drop the Correction of the Voxelastica Design"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if not _idle(cls, context):
+            return False
+        if not flower.shown(context).voxelastica.refinement:
+            cls.poll_message_set("The design is not corrected")
+            return False
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        root = flower.shown(context)
+        root.voxelastica.refinement = ""
+        preview.design_changed(root)
+        return {"FINISHED"}
+
+
+class VOXELASTICA_OT_conduct(bpy.types.Operator):
+    """Let heat or current through a spoke's voxels: effective conductivity and, in time, the critical time"""
+
+    bl_idname = "voxelastica.conduct"
+    bl_label = "Conduct through Voxelastica Design"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return _idle(cls, context)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        root = flower.shown(context)
+        settings = root.voxelastica
+        design = flower.prepared(root).design
+        flow, regime, shape = settings.conduct_flow, settings.conduct_regime, settings.conduct_shape
+
+        def finish(root: bpy.types.Object, job: Job) -> None:
+            stored = root.voxelastica
+            stored.conduct_note = _failed(job, "Conduction")
+            if not stored.conduct_note:
+                stored.conduction = json.dumps(job.result)
+
+        settings.conduct_note = ""
+        job = jobs.start(
+            root, "Conduction", lambda progress: results.conducted(design, flow, regime, shape, progress), finish
+        )
+        if job.finished and job.error:
+            self.report({"ERROR"}, settings.conduct_note)
+            return {"CANCELLED"}
+        return {"FINISHED"}
+
+
 class VOXELASTICA_OT_cancel(bpy.types.Operator):
     """Cancel what runs for this flower; nothing half-written stays"""
 
@@ -143,4 +228,11 @@ class VOXELASTICA_OT_cancel(bpy.types.Operator):
         return {"FINISHED"}
 
 
-CLASSES = (VOXELASTICA_OT_export, VOXELASTICA_OT_verify, VOXELASTICA_OT_cancel)
+CLASSES = (
+    VOXELASTICA_OT_export,
+    VOXELASTICA_OT_verify,
+    VOXELASTICA_OT_refine,
+    VOXELASTICA_OT_unrefine,
+    VOXELASTICA_OT_conduct,
+    VOXELASTICA_OT_cancel,
+)

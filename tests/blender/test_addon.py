@@ -65,6 +65,10 @@ def test_solvers_run_beside_blender(blender: Blender) -> None:
     blender("solve.py")
 
 
+def test_designs_are_refined_and_conduct(blender: Blender) -> None:
+    blender("refine_conduct.py")
+
+
 def test_speed(blender: Blender) -> None:
     blender("speed.py")
 
