@@ -21,21 +21,10 @@ pub struct IndentationInput {
     /// Diameter of the flat indenter, mm; 0.339 of the dome's where absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub indenter_diameter_mm: Option<f64>,
-    /// Whether neighbouring spokes touch, in finite elements.
-    pub neighbours: Neighbours,
     /// Whether strips bend as beams or as plates.
     pub bending: Bending,
     /// Share by which all moduli may be off, percent.
     pub modulus_band_percent: f64,
-    /// Elements of the graded model along, across and through.
-    pub graded_elements: [usize; 3],
-    /// Pressure a millimetre of overclosure in decks, N/mm^3.
-    pub contact_stiffness_n_mm3: f64,
-    /// Loading rate of the explicit deck, depth over the dome's height, 1/s.
-    pub loading_rate_per_s: f64,
-    /// Factor on the density in the explicit deck.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub mass_scaling: Option<f64>,
 }
 
 /// What presses a dome.
@@ -57,16 +46,6 @@ impl Indenter {
             Self::Hub => "hub",
         }
     }
-}
-
-/// What the spokes beside a spoke do.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Neighbours {
-    /// Planes of symmetry stand in the way of its sides.
-    Touch,
-    /// It passes through them.
-    Ignore,
 }
 
 /// How a strip bends across its width.
@@ -91,13 +70,8 @@ impl Default for IndentationInput {
             steps: 40,
             indenter: Indenter::Flat,
             indenter_diameter_mm: None,
-            neighbours: Neighbours::Touch,
             bending: Bending::Beam,
             modulus_band_percent: 10.0,
-            graded_elements: [60, 6, 2],
-            contact_stiffness_n_mm3: 50.0,
-            loading_rate_per_s: 0.1,
-            mass_scaling: None,
         }
     }
 }
@@ -115,11 +89,6 @@ impl IndentationInput {
                     check_value(parameter, &key, value)?;
                 }
             }
-        }
-        if let Some(odd) = self.graded_elements[1..].iter().find(|n| *n % 2 == 1) {
-            let problem = "the numbers across and through the spoke must be even";
-            return Err(InputError::new("indentation.graded_elements", odd, problem)
-                .help("an even number has nodes on the mid-line"));
         }
         Ok(())
     }
@@ -148,7 +117,10 @@ mod tests {
         for (input, key) in [
             (IndentationInput { depth_mm: Some(-1.0), ..IndentationInput::default() }, "depth_mm"),
             (IndentationInput { steps: 0, ..IndentationInput::default() }, "steps"),
-            (IndentationInput { graded_elements: [60, 5, 2], ..IndentationInput::default() }, "graded_elements"),
+            (
+                IndentationInput { modulus_band_percent: f64::NAN, ..IndentationInput::default() },
+                "modulus_band_percent",
+            ),
         ] {
             let error = input.validate().unwrap_err().to_string();
             assert!(error.contains(key), "{error}");

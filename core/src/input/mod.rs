@@ -22,7 +22,7 @@ pub mod target_file;
 pub use conduction::{ConductionInput, Electrode, ThresholdOf};
 pub use error::{InputError, InputProblem};
 pub use fabrication::{FabricationInput, FabricationKind, PrintSource, Printer, Scope, ThreeMfGeometry};
-pub use indentation::{Bending, IndentationInput, Indenter, Neighbours};
+pub use indentation::{Bending, IndentationInput, Indenter};
 pub use model::{
     DeckKind, DeckSolver, DeckStyle, DecksInput, DesignInput, MaterialsInput, StripsInput, TargetInput, ThrustInput,
     VoxelsInput,

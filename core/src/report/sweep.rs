@@ -7,6 +7,9 @@ use super::figures::WIDTH;
 use super::palette::Colour;
 use super::svg::Stroke;
 
+/// Ratio of largest to smallest value from which a logarithmic axis is one.
+const DECADES: f64 = 100.0;
+
 /// A figure of many designs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SweepPicture {
@@ -18,7 +21,7 @@ pub struct SweepPicture {
     pub curves: Vec<SweepCurve>,
     /// Whether the points of a curve are joined.
     pub lines: bool,
-    /// Decimal logarithms on both axes.
+    /// Decimal logarithms where values span two decades or more.
     pub logarithmic: bool,
     /// Sentences below.
     pub caption: Vec<String>,
@@ -38,7 +41,14 @@ pub struct SweepCurve {
 /// # Errors
 /// [`ReportError`].
 pub fn sweep_svg(picture: &SweepPicture) -> Result<String, ReportError> {
-    let drawn = |p: &[f64; 2]| if picture.logarithmic { p.map(f64::log10) } else { *p };
+    // Less than two decades are easier to read without logarithms.
+    let logarithmic = [0, 1].map(|k| {
+        let values = || picture.curves.iter().flat_map(|c| c.points.iter().map(move |p| p[k]));
+        let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(0.0, f64::max));
+        picture.logarithmic && high / low >= DECADES
+    });
+    let drawn =
+        |p: &[f64; 2]| -> [f64; 2] { std::array::from_fn(|k| if logarithmic[k] { p[k].log10() } else { p[k] }) };
     let all = || picture.curves.iter().flat_map(|c| c.points.iter().map(drawn));
     let mut names: Vec<&str> = Vec::new();
     for curve in &picture.curves {
@@ -63,7 +73,7 @@ pub fn sweep_svg(picture: &SweepPicture) -> Result<String, ReportError> {
     }
     let axis = |k: usize, margin: f64| {
         let range = bounds(all().map(|p| p[k]), margin);
-        Axis { decades: picture.logarithmic, ..Axis::new(&picture.axes[k], range, 8) }
+        Axis { decades: logarithmic[k], ..Axis::new(&picture.axes[k], range, 8) }
     };
     let chart = Chart { figure: "sweep", size: [WIDTH, 380.0], x: axis(0, 0.02), y: axis(1, 0.05), layers };
     let legend = names.iter().filter(|n| !n.is_empty()).map(|n| (colour(n), *n)).collect();

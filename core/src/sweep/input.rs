@@ -77,7 +77,7 @@ pub struct PlotInput {
     /// An axis whose values have colours.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub series: Option<String>,
-    /// Decimal logarithms on both axes, as in charts of materials.
+    /// Decimal logarithms where values span two decades or more, as in charts of materials.
     #[serde(default)]
     pub logarithmic: bool,
 }

@@ -36,13 +36,6 @@ pub(super) const INDENTATION: &[Parameter] = &[
         ..DOME
     },
     Parameter {
-        key: "indentation.neighbours",
-        kind: Kind::Choice { choices: &["touch", "ignore"] },
-        default: Some("\"touch\""),
-        description: "Whether neighbouring spokes touch, in finite elements: planes of symmetry stand in the way of a spoke's sides.",
-        ..DOME
-    },
-    Parameter {
         key: "indentation.bending",
         kind: Kind::Choice { choices: &["beam", "plane-strain"] },
         default: Some("\"beam\""),
@@ -55,35 +48,6 @@ pub(super) const INDENTATION: &[Parameter] = &[
         unit: Some("%"),
         default: Some("10.0"),
         description: "Share by which all moduli may be off: the force's band.",
-        ..DOME
-    },
-    Parameter {
-        key: "indentation.graded_elements",
-        kind: Kind::Integers { count: 3, least: 1, most: 2000 },
-        default: Some("[60, 6, 2]"),
-        description: "Elements of the graded strip along, across and through.",
-        ..DOME
-    },
-    Parameter {
-        key: "indentation.contact_stiffness_n_mm3",
-        kind: length(1e9),
-        unit: Some("N/mm^3"),
-        default: Some("50.0"),
-        description: "Pressure a millimetre of overclosure between indenter and spoke, in decks.",
-        ..DOME
-    },
-    Parameter {
-        key: "indentation.loading_rate_per_s",
-        kind: length(1e6),
-        unit: Some("1/s"),
-        default: Some("0.1"),
-        description: "Depth over the dome's height and time: the duration of the explicit deck's step.",
-        ..DOME
-    },
-    Parameter {
-        key: "indentation.mass_scaling",
-        kind: Kind::Number { least: 1.0, exclusive: false, most: 1e12 },
-        description: "Factor on the density in the explicit deck; without it mass is not scaled.",
         ..DOME
     },
 ];
