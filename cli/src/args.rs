@@ -262,6 +262,9 @@ pub struct IndentOptions {
     /// How the elastica bends.
     #[arg(long, value_enum)]
     pub bending: Option<BendingChoice>,
+    /// Let the spoke pass through its neighbours, in finite elements.
+    #[arg(long)]
+    pub ignore_neighbours: bool,
     /// Share by which all moduli may be off: the force's band.
     #[arg(long, value_name = "PCT")]
     pub modulus_band: Option<f64>,
@@ -317,6 +320,10 @@ fn batch(text: &str) -> Result<Batch, String> {
 pub enum IndentModel {
     /// The graded strip as an elastica; milliseconds.
     Elastica,
+    /// The graded strip in finite elements (the mesh of CalculiX's graded deck).
+    Graded,
+    /// Every voxel in finite elements.
+    Voxel,
 }
 
 /// What presses.

@@ -19,36 +19,43 @@ use voxelastica_core::{Design, DesignInput, Limits};
 /// The longest gaps that are shown.
 const SHOWN: usize = 4;
 
-/// The time of the last question, and the longest gaps with what was told after them.
+/// Listens to the questions of some work.
 struct Clock {
-    state: Mutex<(Instant, Vec<(Duration, f64)>, u64)>,
+    heard: Mutex<Heard>,
+}
+
+struct Heard {
+    last: Instant,
+    /// The longest gaps and what was told after them.
+    longest: Vec<(Duration, f64)>,
+    questions: u64,
 }
 
 impl Clock {
     fn new() -> Self {
-        Self { state: Mutex::new((Instant::now(), Vec::new(), 0)) }
+        Self { heard: Mutex::new(Heard { last: Instant::now(), longest: Vec::new(), questions: 0 }) }
     }
 
     fn ask(&self, told: f64) -> bool {
-        if let Ok(mut state) = self.state.lock() {
-            let gap = state.0.elapsed();
-            let place = state.1.partition_point(|(longer, _)| *longer >= gap);
-            state.1.insert(place, (gap, told));
-            state.1.truncate(SHOWN);
-            (state.0, state.2) = (Instant::now(), state.2 + 1);
+        if let Ok(mut heard) = self.heard.lock() {
+            let gap = heard.last.elapsed();
+            let place = heard.longest.partition_point(|(longer, _)| *longer >= gap);
+            heard.longest.insert(place, (gap, told));
+            heard.longest.truncate(SHOWN);
+            (heard.last, heard.questions) = (Instant::now(), heard.questions + 1);
         }
         true
     }
 
     fn report(&self, what: &str, start: Instant) {
         self.ask(1.0);
-        if let Ok(state) = self.state.lock() {
-            let gaps = state.1.iter().map(|(gap, told)| format!("{:.0} (at {told:.3})", 1e3 * gap.as_secs_f64()));
+        if let Ok(heard) = self.heard.lock() {
+            let gaps = heard.longest.iter().map(|(gap, told)| format!("{:.0} (at {told:.3})", 1e3 * gap.as_secs_f64()));
             let gaps = gaps.collect::<Vec<_>>().join(", ");
             println!(
                 "{what:<44}{:>8.2} s {:>7} questions; longest gaps, ms: {gaps}",
                 start.elapsed().as_secs_f64(),
-                state.2
+                heard.questions
             );
         }
     }
@@ -76,10 +83,11 @@ fn main() {
     let Ok(folder) = tempfile::tempdir() else { return };
     let fine = input(100.0, 0.2, "[decks]\nwrite = [\"voxel_solid\", \"voxel_shell\"]\n");
     let mut design = None;
-    timed("design of a million voxels", |clock| {
+    timed("design, L = 100 mm, voxels of 0.2 mm", |clock| {
         design = Design::compute_unless(&fine, Limits::default(), &|| !clock.ask(0.0)).ok();
     });
     let Some(design) = design else { return };
+    println!("{} voxels a spoke", design.grid().phases().len());
     timed("  its decks and report", |clock| {
         let written = write_design(&design, folder.path(), WriteOptions::default(), &|_| clock.ask(0.0));
         assert!(written.is_ok());

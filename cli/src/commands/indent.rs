@@ -1,6 +1,8 @@
 //! `voxelastica indent`.
 
+use voxelastica_core::fem::{MorphOptions, Resolution};
 use voxelastica_core::indentation::output::write;
+use voxelastica_core::indentation::solid::{self, SolidOptions};
 use voxelastica_core::indentation::{Indentation, elastica};
 use voxelastica_core::input::{Bending, IndentationInput, Indenter};
 use voxelastica_core::{Design, Error};
@@ -23,6 +25,8 @@ pub fn run(options: &IndentOptions, console: &Console) -> Result<u8, Error> {
     };
     let found = match options.model {
         IndentModel::Elastica => elastica::indent(&design, &input, &progress),
+        IndentModel::Graded => solid::indent(&design, &input, &solids(options, &design), &progress),
+        IndentModel::Voxel => solid::indent(&design, &input, &solids(options, &design), &progress),
     };
     bar.finish_and_clear();
     let found = found.map_err(|e| located(e.into()))?;
@@ -35,6 +39,14 @@ pub fn run(options: &IndentOptions, console: &Console) -> Result<u8, Error> {
         console.warn(warning);
     }
     Ok(0)
+}
+
+fn solids(options: &IndentOptions, design: &Design) -> SolidOptions {
+    let resolution = match options.model {
+        IndentModel::Voxel => Resolution::Voxels(1),
+        _ => Resolution::Graded(design.input().decks.calculix_graded_elements),
+    };
+    SolidOptions { resolution, neighbours: !options.ignore_neighbours, morph: MorphOptions::default() }
 }
 
 /// The design's parameters with what the command line says instead.

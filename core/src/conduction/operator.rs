@@ -194,7 +194,6 @@ impl<'a> Operator<'a> {
 
     /// Flux that the cells of every slice take from the plane of nodes before them: what flows through the slice, positive from
     /// the rim to the far end (where `u` falls).
-    #[must_use]
     ///
     /// # Errors
     /// [`ConductionError::Cancelled`] where `watch` says so.

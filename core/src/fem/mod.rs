@@ -8,6 +8,7 @@
 //! - [`ordering`], [`pattern`]: unknowns in the order of their elimination and the sparsity of the tangent;
 //! - [`assembly`]: forces and tangent of a strip;
 //! - [`factorisation`]: sparse factors of the tangent and its inertia;
+//! - [`contact`]: rigid planes that nodes may touch;
 //! - [`newton`]: equilibrium from a starting shape;
 //! - [`morph`]: the closed strip, from the design's own prediction or along the path from flat;
 //! - [`recovery`]: mid-line, reactions, strains and stresses.
@@ -15,6 +16,7 @@
 #![allow(clippy::needless_range_loop, reason = "indices of tensors and matrices stand as in the equations")]
 
 pub mod assembly;
+pub mod contact;
 pub mod element;
 mod error;
 pub mod factorisation;

@@ -5,6 +5,7 @@
 
 use super::FemError;
 use super::assembly::{Forces, State, forces, tangent};
+use super::contact::Contact;
 use super::factorisation::Factorisation;
 use super::model::Model;
 use super::pattern::Pattern;
@@ -34,6 +35,8 @@ pub struct Solver<'a> {
     pattern: Pattern,
     factors: Factorisation,
     tangent: Vec<f64>,
+    /// What nodes may touch.
+    pub contact: Contact,
 }
 
 /// An equilibrium.
@@ -82,7 +85,7 @@ impl<'a> Solver<'a> {
         }
         let factors = Factorisation::new(&pattern, limit)?;
         let tangent = vec![0.0; pattern.rows.len()];
-        Ok(Self { model, pattern, factors, tangent })
+        Ok(Self { model, pattern, factors, tangent, contact: Contact::default() })
     }
 
     /// Unknowns of the mesh.
@@ -113,7 +116,7 @@ impl<'a> Solver<'a> {
         // Whether the factors are those of a tangent close to the equilibrium's.
         let mut close = false;
         let diverged = |iterations, residual| Stop::Diverged { iterations, residual };
-        let Some(mut held) = forces(self.model, state, cancelled)? else { return Err(diverged(0, f64::INFINITY)) };
+        let Some(mut held) = self.forces(state, cancelled)? else { return Err(diverged(0, f64::INFINITY)) };
         let mut residual = self.pattern.gather(&held.of_nodes);
         loop {
             let relative = norm(&residual) / held.scale.max(f64::MIN_POSITIVE);
@@ -124,6 +127,7 @@ impl<'a> Solver<'a> {
             if !tangent(self.model, &self.pattern, state, &mut self.tangent, cancelled)? {
                 return Err(diverged(iterations, relative));
             }
+            self.contact.add_tangent(&self.model.mesh, state, &self.pattern, &mut self.tangent);
             let near = relative <= CLOSE;
             let nearby = if near && !close {
                 None
@@ -161,6 +165,15 @@ impl<'a> Solver<'a> {
         }
     }
 
+    /// Forces of the strip and of what it touches.
+    fn forces(&self, state: &mut State, cancelled: Cancelled<'_>) -> Result<Option<Forces>, FemError> {
+        let mut held = forces(self.model, state, cancelled)?;
+        if let Some(held) = &mut held {
+            self.contact.add_forces(&self.model.mesh, state, &mut held.of_nodes);
+        }
+        Ok(held)
+    }
+
     /// The state after a step or the part of it that is accepted; `None` where even a small part turns elements inside out.
     fn search(
         &self,
@@ -175,7 +188,7 @@ impl<'a> Solver<'a> {
         for _ in 0..TRIALS {
             let mut moved = state.clone();
             self.pattern.spread(change, share, &mut moved.displacements);
-            let Some(held) = forces(self.model, &mut moved, cancelled)? else {
+            let Some(held) = self.forces(&mut moved, cancelled)? else {
                 share *= 0.4;
                 continue;
             };

@@ -86,7 +86,7 @@ pub struct ElementResults {
 }
 
 impl ElementResults {
-    pub(super) fn of(model: &Model, state: &State, cancelled: Cancelled<'_>) -> Result<Self, FemError> {
+    pub(crate) fn of(model: &Model, state: &State, cancelled: Cancelled<'_>) -> Result<Self, FemError> {
         let count = model.mesh.elements.len();
         let mean = |values: &[Voigt; NODES]| -> Voigt {
             std::array::from_fn(|k| values.iter().map(|v| v[k]).sum::<f64>() / NODES as f64)

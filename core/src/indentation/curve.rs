@@ -66,7 +66,7 @@ pub fn rigidity(curve: &[LoadPoint], depth_mm: f64) -> f64 {
         if b <= a {
             break;
         }
-        let end = force_at(&pair[..], b).unwrap_or(pair[1].force_n);
+        let end = force_at(pair, b).unwrap_or(pair[1].force_n);
         let slope = (end - pair[0].force_n) / (b - a);
         let offset = pair[0].force_n - slope * a;
         moment += slope * (b.powi(3) - a.powi(3)) / 3.0 + 0.5 * offset * (b * b - a * a);

@@ -13,6 +13,7 @@ mod curve;
 pub mod elastica;
 mod error;
 pub mod output;
+pub mod solid;
 
 pub use curve::{LoadPoint, rigidity, secant, work};
 pub use error::IndentationError;
@@ -59,6 +60,31 @@ pub struct PhaseStrain {
     pub strain: f64,
     /// What the material stands, where that is known.
     pub limit: Option<f64>,
+}
+
+impl PhaseStrain {
+    /// What the user should know, where the strain is more than the material stands.
+    fn warning(&self) -> Option<String> {
+        let limit = self.limit.filter(|limit| self.strain > *limit)?;
+        let (strain, limit) = (100.0 * self.strain, 100.0 * limit);
+        Some(format!("{} is strained by {strain:.2} % and stands {limit:.2} % (max_strain)", self.label))
+    }
+}
+
+/// What the user should know about a curve; `lost` is the depth at which its equilibrium becomes unstable.
+fn curve_warnings(curve: &[LoadPoint], lost: Option<f64>) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if let Some(depth) = lost {
+        warnings
+            .push(format!("from a depth of {depth:.3} mm on this equilibrium is unstable: the dome may bend unevenly"));
+    }
+    if let Some(pair) = curve.windows(2).find(|p| p[1].force_n < p[0].force_n) {
+        warnings.push(format!(
+            "the force falls beyond a depth of {:.3} mm: under a weight of {:.4} N a spoke the dome would snap through",
+            pair[0].depth_mm, pair[0].force_n
+        ));
+    }
+    warnings
 }
 
 /// Force-displacement curve of one spoke and what follows from it.

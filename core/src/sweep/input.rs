@@ -41,10 +41,11 @@ pub struct SweepInput {
 }
 
 /// Which values points take.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(tag = "method", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum SampleInput {
     /// Every combination; the last axis varies fastest.
+    #[default]
     Grid,
     /// As many values of every axis as there are points, each once, combined at random.
     LatinHypercube {
@@ -58,12 +59,6 @@ pub enum SampleInput {
 
 fn one() -> u64 {
     1
-}
-
-impl Default for SampleInput {
-    fn default() -> Self {
-        Self::Grid
-    }
 }
 
 /// A picture of the table.

@@ -15,7 +15,7 @@ mod tests;
 use chain::{Chain, Hub, Plate, Shape, Stop};
 
 use super::curve::{LoadPoint, rigidity, work};
-use super::{Indentation, IndentationError, IndentationModel, PhaseStrain, Press, smooth_volume};
+use super::{Indentation, IndentationError, IndentationModel, PhaseStrain, Press, curve_warnings, smooth_volume};
 use crate::design::{Design, STATIONS};
 use crate::input::{Bending, IndentationInput};
 use crate::progress::Share;
@@ -135,6 +135,9 @@ impl<'a> Run<'a> {
         let [volume, mean_modulus] = smooth_volume(self.design);
         let limit = self.design.phases().phases().iter().filter_map(|m| m.max_strain).reduce(f64::min);
         let strain = curve.iter().fold(0.0_f64, |m, p| m.max(p.largest_strain));
+        let largest = PhaseStrain { label: "GRADED".to_owned(), strain, limit };
+        let mut warnings = curve_warnings(&curve, lost);
+        warnings.extend(largest.warning());
         let work = work(&curve);
         Ok(Indentation {
             model: IndentationModel::Elastica,
@@ -149,8 +152,8 @@ impl<'a> Run<'a> {
             specific_energy_nmm_mm3: work / volume,
             volume_mm3: volume,
             mean_modulus_mpa: mean_modulus,
-            warnings: warnings(&curve, lost, strain, limit),
-            largest_strain: vec![PhaseStrain { label: "GRADED".to_owned(), strain, limit }],
+            largest_strain: vec![largest],
+            warnings,
             modulus_band_percent: input.modulus_band_percent,
             penetration_mm: penetration,
             curve,
@@ -222,26 +225,4 @@ fn located(stop: Stop, depth_mm: f64) -> IndentationError {
         Stop::Diverged { iterations, residual } => IndentationError::NoEquilibrium { depth_mm, iterations, residual },
         Stop::Unsettled { rounds, changes } => IndentationError::Contact { depth_mm, rounds, changes },
     }
-}
-
-fn warnings(curve: &[LoadPoint], lost: Option<f64>, strain: f64, limit: Option<f64>) -> Vec<String> {
-    let mut warnings = Vec::new();
-    if let Some(depth) = lost {
-        warnings
-            .push(format!("from a depth of {depth:.3} mm on this equilibrium is unstable: the dome may bend unevenly"));
-    }
-    if let Some(pair) = curve.windows(2).find(|p| p[1].force_n < p[0].force_n) {
-        warnings.push(format!(
-            "the force falls beyond a depth of {:.3} mm: under a weight of {:.4} N a spoke the dome would snap through",
-            pair[0].depth_mm, pair[0].force_n
-        ));
-    }
-    if let Some(limit) = limit.filter(|limit| strain > *limit) {
-        warnings.push(format!(
-            "the strip is strained by {:.2} %, its weakest phase stands {:.2} % (max_strain)",
-            100.0 * strain,
-            100.0 * limit
-        ));
-    }
-    warnings
 }
