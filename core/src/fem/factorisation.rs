@@ -8,7 +8,10 @@
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt::factor::LdltRegularization;
+use faer::linalg::matmul::matmul;
+use faer::linalg::triangular_solve::{solve_unit_lower_triangular_in_place, solve_unit_upper_triangular_in_place};
 use faer::perm::PermRef;
+use faer::reborrow::ReborrowMut;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::supernodal::SupernodalLdltRef;
 use faer::sparse::linalg::cholesky::{
@@ -16,7 +19,7 @@ use faer::sparse::linalg::cholesky::{
     factorize_symbolic_cholesky,
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Conj, MatMut, Par, Side, Spec};
+use faer::{Accum, ColMut, ColRef, Conj, MatMut, Par, Side, Spec};
 
 use super::FemError;
 use super::pattern::Pattern;
@@ -26,6 +29,8 @@ use crate::progress::Cancelled;
 const USELESS: f64 = 1e-3;
 /// Residual at which a solution is not refined any further.
 const REFINED: f64 = 1e-10;
+/// Supernodes between two questions whether to go on.
+const ASK_EVERY: usize = 64;
 /// Steps of iterative refinement.
 const REFINEMENTS: usize = 3;
 
@@ -153,7 +158,7 @@ impl Factorisation {
                 return Err(FemError::Cancelled);
             }
             let mut preconditioned = residual.clone();
-            self.apply(&mut preconditioned);
+            self.apply(&mut preconditioned, cancelled)?;
             let now = dot(&residual, &preconditioned);
             if step == 0 {
                 direction = preconditioned;
@@ -197,7 +202,7 @@ impl Factorisation {
             if cancelled() {
                 return Err(FemError::Cancelled);
             }
-            self.apply(&mut residual);
+            self.apply(&mut residual, cancelled)?;
             x.iter_mut().zip(&residual).for_each(|(x, d)| *x += d);
             let product = pattern.multiply(tangent, &x);
             residual = right.iter().zip(&product).map(|(b, p)| b - p).collect();
@@ -265,20 +270,25 @@ impl Factorisation {
         self.pivoting = Some(pivoting);
     }
 
-    fn apply(&mut self, x: &mut [f64]) {
+    /// Solves with the factors there are. Large ones take a third of a second: it is asked on the way whether to go on.
+    fn apply(&mut self, x: &mut [f64], cancelled: Cancelled<'_>) -> Result<(), FemError> {
         let n = x.len();
-        let stack = MemStack::new(&mut self.memory);
-        let right = MatMut::from_column_major_slice_mut(x, n, 1);
-        match &self.pivoting {
-            None => {
-                LdltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(Conj::No, right, parallel(), stack)
+        match (&self.pivoting, self.symbolic.raw()) {
+            (None, SymbolicCholeskyRaw::Supernodal(symbolic)) if self.symbolic.perm().is_none() => {
+                return substitute(SupernodalLdltRef::new(symbolic, &self.values), x, cancelled);
             }
-            Some(pivoting) => {
+            (None, _) => {
+                let (stack, right) = (MemStack::new(&mut self.memory), MatMut::from_column_major_slice_mut(x, n, 1));
+                LdltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(Conj::No, right, parallel(), stack);
+            }
+            (Some(pivoting), _) => {
+                let (stack, right) = (MemStack::new(&mut self.memory), MatMut::from_column_major_slice_mut(x, n, 1));
                 let order = PermRef::new_checked(&pivoting.forward, &pivoting.inverse, n);
                 IntranodeLbltRef::new(&self.symbolic, &self.values, &pivoting.subdiagonal, order)
                     .solve_in_place_with_conj(Conj::No, right, Par::Seq, stack);
             }
         }
+        Ok(())
     }
 
     /// The diagonal of `D`.
@@ -292,6 +302,50 @@ impl Factorisation {
             })
             .collect()
     }
+}
+
+/// Forward and backward substitution with `L D L^T`, supernode after supernode.
+fn substitute(
+    factors: SupernodalLdltRef<'_, usize, f64>,
+    x: &mut [f64],
+    cancelled: Cancelled<'_>,
+) -> Result<(), FemError> {
+    let count = factors.symbolic().n_supernodes();
+    let mut below = Vec::new();
+    for s in 0..count {
+        if s.is_multiple_of(ASK_EVERY) && cancelled() {
+            return Err(FemError::Cancelled);
+        }
+        let node = factors.supernode(s);
+        let (own, rest) = node.val().split_at_row(node.val().ncols());
+        let top = &mut x[node.start()..][..own.ncols()];
+        solve_unit_lower_triangular_in_place(own, ColMut::from_slice_mut(top).as_mat_mut(), Par::Seq);
+        below.clear();
+        below.resize(rest.nrows(), 0.0);
+        let sums = ColMut::from_slice_mut(&mut below);
+        matmul(sums.as_mat_mut(), Accum::Replace, rest, ColRef::from_slice(top).as_mat(), 1.0, Par::Seq);
+        for (row, sum) in node.pattern().iter().zip(&below) {
+            x[*row] -= sum;
+        }
+    }
+    for s in (0..count).rev() {
+        if s.is_multiple_of(ASK_EVERY) && cancelled() {
+            return Err(FemError::Cancelled);
+        }
+        let node = factors.supernode(s);
+        let (own, rest) = node.val().split_at_row(node.val().ncols());
+        below.clear();
+        below.extend(node.pattern().iter().map(|row| x[*row]));
+        let top = &mut x[node.start()..][..own.ncols()];
+        for (j, value) in top.iter_mut().enumerate() {
+            *value /= own[(j, j)];
+        }
+        let known = ColRef::from_slice(&below);
+        let mut top = ColMut::from_slice_mut(top);
+        matmul(top.rb_mut().as_mat_mut(), Accum::Add, rest.transpose(), known.as_mat(), -1.0, Par::Seq);
+        solve_unit_upper_triangular_in_place(own.transpose(), top.as_mat_mut(), Par::Seq);
+    }
+    Ok(())
 }
 
 fn structure(pattern: &Pattern) -> SymbolicSparseColMatRef<'_, usize> {
