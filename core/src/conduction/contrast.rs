@@ -107,9 +107,10 @@ pub(super) fn solve(
 
         // A_C w = f - e A_I (a + w).
         add(&levels, &differences, &mut sum);
-        insulator.operator.flux(&sum, &mut flux);
+        insulator.operator.flux(&sum, &mut flux, &|| watch.goes_on());
         watch.at(share(0.0))?;
-        conductor.plain.operator.flux(&differences, &mut load);
+        conductor.plain.operator.flux(&differences, &mut load, &|| watch.goes_on());
+        watch.at(share(0.0))?;
         for ((l, f), b) in load.iter_mut().zip(&flux).zip(&boundary.loads) {
             *l = b / most - *l - ratio * f;
         }
@@ -124,7 +125,7 @@ pub(super) fn solve(
 
         // Balance of every part and every node inside the insulating phase.
         add(&levels, &differences, &mut sum);
-        insulator.operator.flux(&sum, &mut flux);
+        insulator.operator.flux(&sum, &mut flux, &|| watch.goes_on());
         watch.at(share(0.5))?;
         for ((l, f), b) in load.iter_mut().zip(&flux).zip(&boundary.loads) {
             *l = b / weak - f;
@@ -324,11 +325,11 @@ struct Conductor<'a> {
 }
 
 impl System for Conductor<'_> {
-    fn apply(&mut self, u: &[f64], out: &mut [f64]) {
-        self.plain.apply(u, out);
+    fn apply(&mut self, u: &[f64], out: &mut [f64], go_on: &(dyn Fn() -> bool + Sync)) {
+        self.plain.apply(u, out, go_on);
     }
 
-    fn precondition(&mut self, r: &[f64], out: &mut [f64], go_on: &dyn Fn() -> bool) {
+    fn precondition(&mut self, r: &[f64], out: &mut [f64], go_on: &(dyn Fn() -> bool + Sync)) {
         self.plain.precondition(r, out, go_on);
         self.parts.remove_means(out);
     }
@@ -345,13 +346,13 @@ struct Insulator<'a> {
 }
 
 impl System for Insulator<'_> {
-    fn apply(&mut self, u: &[f64], out: &mut [f64]) {
+    fn apply(&mut self, u: &[f64], out: &mut [f64], go_on: &(dyn Fn() -> bool + Sync)) {
         self.parts.spread_into(u, &mut self.full);
-        self.operator.apply(&self.full, out);
+        self.operator.apply(&self.full, out, go_on);
         self.parts.gather(out);
     }
 
-    fn precondition(&mut self, r: &[f64], out: &mut [f64], go_on: &dyn Fn() -> bool) {
+    fn precondition(&mut self, r: &[f64], out: &mut [f64], go_on: &(dyn Fn() -> bool + Sync)) {
         self.parts.spread_into(r, &mut self.full);
         for (v, w) in self.full.iter_mut().zip(&self.weights) {
             *v *= w;

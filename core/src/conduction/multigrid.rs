@@ -110,10 +110,10 @@ impl Multigrid {
         operator: &Operator<'_>,
         residual: &[f64],
         out: &mut [f64],
-        go_on: &dyn Fn() -> bool,
+        go_on: &(dyn Fn() -> bool + Sync),
     ) {
         let Some((own, below)) = self.work.split_first_mut() else { return };
-        let apply = |u: &[f64], o: &mut [f64]| operator.apply(u, o);
+        let apply = |u: &[f64], o: &mut [f64]| operator.apply(u, o, go_on);
         let smoother = Chebyshev {
             apply: &apply,
             inverse_diagonal: operator.inverse_diagonal(),
@@ -124,7 +124,7 @@ impl Multigrid {
             return;
         }
         if let Some((level, rest)) = self.levels.split_first() {
-            operator.apply(out, &mut own.product);
+            operator.apply(out, &mut own.product, go_on);
             if !go_on() {
                 return;
             }
@@ -143,7 +143,7 @@ impl Multigrid {
 }
 
 /// One V-cycle from `level` down; takes and leaves its vectors in `work`.
-fn cycle(level: &Level, rest: &[Level], coarsest: &Dense, work: &mut [Work], go_on: &dyn Fn() -> bool) {
+fn cycle(level: &Level, rest: &[Level], coarsest: &Dense, work: &mut [Work], go_on: &(dyn Fn() -> bool + Sync)) {
     let Some((own, below)) = work.split_first_mut() else { return };
     let residual = std::mem::take(&mut own.residual);
     let mut correction = std::mem::take(&mut own.correction);
@@ -194,17 +194,17 @@ struct Chebyshev<'a> {
 
 impl Chebyshev<'_> {
     /// Smooths from zero: `u` is overwritten.
-    fn start(&self, residual: &[f64], u: &mut [f64], work: &mut Work, go_on: &dyn Fn() -> bool) {
+    fn start(&self, residual: &[f64], u: &mut [f64], work: &mut Work, go_on: &(dyn Fn() -> bool + Sync)) {
         u.fill(0.0);
         self.steps(residual, u, work, true, go_on);
     }
 
     /// Smooths on.
-    fn improve(&self, residual: &[f64], u: &mut [f64], work: &mut Work, go_on: &dyn Fn() -> bool) {
+    fn improve(&self, residual: &[f64], u: &mut [f64], work: &mut Work, go_on: &(dyn Fn() -> bool + Sync)) {
         self.steps(residual, u, work, false, go_on);
     }
 
-    fn steps(&self, rhs: &[f64], u: &mut [f64], work: &mut Work, from_zero: bool, go_on: &dyn Fn() -> bool) {
+    fn steps(&self, rhs: &[f64], u: &mut [f64], work: &mut Work, from_zero: bool, go_on: &(dyn Fn() -> bool + Sync)) {
         let (middle, half) = (0.5 * self.largest * (1.0 + SMOOTHED), 0.5 * self.largest * (1.0 - SMOOTHED));
         let sigma = middle / half;
         let mut rho = 1.0 / sigma;

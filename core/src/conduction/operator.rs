@@ -22,6 +22,9 @@ const SMALL: usize = 12_000;
 /// Lines of nodes after which it is asked whether to go on.
 const ASK_EVERY: usize = 64;
 
+/// The same while the operator is applied.
+const OFTEN: usize = 1024;
+
 /// Nodes that a thread takes at a time.
 const TASK: usize = 4_000;
 
@@ -157,11 +160,18 @@ impl<'a> Operator<'a> {
         if stopped.into_inner() { Err(ConductionError::Cancelled) } else { Ok(out) }
     }
 
-    /// `A u` at all nodes, given ones included: the flux that enters there.
-    pub fn flux(&self, u: &[f64], out: &mut [f64]) {
+    /// `A u` at all nodes, given ones included: the flux that enters there. Where `go_on` says no, the rest of `out` is zero.
+    pub fn flux(&self, u: &[f64], out: &mut [f64], go_on: &(dyn Fn() -> bool + Sync)) {
         let levels = self.mesh.cells()[1] + 1;
+        let stopped = AtomicBool::new(false);
         for_rows(out, self.mesh.cells()[2] + 1, |line, row| {
             row.fill(0.0);
+            if line.is_multiple_of(OFTEN) && !go_on() {
+                stopped.store(true, Ordering::Relaxed);
+            }
+            if stopped.load(Ordering::Relaxed) {
+                return;
+            }
             let (plane, level) = (line / levels, line % levels);
             for (i, a) in neighbours(plane, self.mesh.cells()[0]) {
                 for (k, b) in neighbours(level, levels - 1) {
@@ -179,9 +189,9 @@ impl<'a> Operator<'a> {
         }
     }
 
-    /// `A u` at the free nodes, zero at the others.
-    pub fn apply(&self, u: &[f64], out: &mut [f64]) {
-        self.flux(u, out);
+    /// `A u` at the free nodes, zero at the others, and where `go_on` says no.
+    pub fn apply(&self, u: &[f64], out: &mut [f64], go_on: &(dyn Fn() -> bool + Sync)) {
+        self.flux(u, out, go_on);
         for_rows(out, self.mesh.cells()[2] + 1, |line, row| {
             let start = line * row.len();
             for (o, d) in row.iter_mut().zip(&self.inverse_diagonal[start..]) {

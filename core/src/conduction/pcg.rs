@@ -1,5 +1,7 @@
 //! Conjugate gradients with sums that do not depend on threads.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use rayon::prelude::*;
 
 use super::ConductionError;
@@ -48,6 +50,17 @@ impl Watch<'_> {
     }
 }
 
+/// A watch's progress that stays at no once it said so: work that was left out on the way is never taken for done.
+pub(super) fn latched<'a>(watch: Watch<'a>, stopped: &'a AtomicBool) -> impl Fn(f64) -> bool + Sync + 'a {
+    move |share| {
+        let goes_on = !stopped.load(Ordering::Relaxed) && (watch.progress)(share);
+        if !goes_on {
+            stopped.store(true, Ordering::Relaxed);
+        }
+        goes_on
+    }
+}
+
 impl std::fmt::Debug for Watch<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Watch").field("span", &self.span).finish_non_exhaustive()
@@ -76,10 +89,10 @@ pub(super) fn combine(a: f64, x: &[f64], b: f64, y: &mut [f64]) {
 
 /// A symmetric, positive semi-definite system and its preconditioner.
 pub(super) trait System {
-    /// `out = A u`.
-    fn apply(&mut self, u: &[f64], out: &mut [f64]);
+    /// `out = A u`; may stop early where `go_on` says no.
+    fn apply(&mut self, u: &[f64], out: &mut [f64], go_on: &(dyn Fn() -> bool + Sync));
     /// `out = M^-1 r`; may stop early where `go_on` says no.
-    fn precondition(&mut self, r: &[f64], out: &mut [f64], go_on: &dyn Fn() -> bool);
+    fn precondition(&mut self, r: &[f64], out: &mut [f64], go_on: &(dyn Fn() -> bool + Sync));
 }
 
 /// When to stop.
@@ -123,7 +136,7 @@ pub(super) fn solve(
     }
     let scale = scale.unwrap_or_else(|| dot(b, &z));
     if !from_zero {
-        system.apply(u, &mut product);
+        system.apply(u, &mut product, &go_on);
         combine(-1.0, &product, 1.0, &mut r);
         system.precondition(&r, &mut z, &go_on);
     }
@@ -133,7 +146,10 @@ pub(super) fn solve(
     let mut direction = z.clone();
     let mut done = Iterations { count: 0, residual: relative(energy, scale) };
     while energy > target && done.count < tolerance.iterations {
-        system.apply(&direction, &mut product);
+        system.apply(&direction, &mut product, &go_on);
+        if !go_on() {
+            return Err(ConductionError::Cancelled);
+        }
         let curvature = dot(&direction, &product);
         if curvature <= 0.0 || !curvature.is_finite() {
             break;

@@ -1,11 +1,13 @@
 //! Steady conduction: `div(kappa grad u) = 0` with values given at some nodes and flux entering at others.
 
+use std::sync::atomic::AtomicBool;
+
 use super::components::{ASK_EVERY, Components, NONE};
 use super::contrast;
 use super::mesh::{BrickMesh, VOID};
 use super::multigrid::Multigrid;
 use super::operator::Operator;
-use super::pcg::{self, Iterations, System, Tolerance, Watch, combine};
+use super::pcg::{self, Iterations, System, Tolerance, Watch, combine, latched};
 use super::{ConductionError, memory};
 
 /// Largest contrast of conductivities that is solved in one system.
@@ -141,6 +143,9 @@ pub fn solve(
     options: &SteadyOptions,
     watch: Watch<'_>,
 ) -> Result<Steady, ConductionError> {
+    let stopped = AtomicBool::new(false);
+    let progress = latched(watch, &stopped);
+    let watch = Watch { progress: &progress, ..watch };
     check(mesh, boundary)?;
     memory::require(mesh, options.memory)?;
     let present = present(mesh, conductivities)?;
@@ -241,11 +246,11 @@ impl<'a> Plain<'a> {
 }
 
 impl System for Plain<'_> {
-    fn apply(&mut self, u: &[f64], out: &mut [f64]) {
-        self.operator.apply(u, out);
+    fn apply(&mut self, u: &[f64], out: &mut [f64], go_on: &(dyn Fn() -> bool + Sync)) {
+        self.operator.apply(u, out, go_on);
     }
 
-    fn precondition(&mut self, r: &[f64], out: &mut [f64], go_on: &dyn Fn() -> bool) {
+    fn precondition(&mut self, r: &[f64], out: &mut [f64], go_on: &(dyn Fn() -> bool + Sync)) {
         self.multigrid.apply(&self.operator, r, out, go_on);
     }
 }
@@ -264,7 +269,8 @@ fn together(
     watch.at(0.0)?;
     let mut values = boundary.values.clone();
     let mut load = vec![0.0; mesh.nodes()];
-    system.operator.apply(&values, &mut load);
+    system.operator.apply(&values, &mut load, &|| watch.goes_on());
+    watch.at(0.0)?;
     combine(1.0 / most, &boundary.loads, -1.0, &mut load);
     mask(&mut load, system.operator.inverse_diagonal());
     let mut correction = vec![0.0; mesh.nodes()];

@@ -13,10 +13,12 @@
 //! applied, so it may be a diagonal (lumped heat capacities) or, for the relaxation of charges, the operator of the
 //! permittivities: then `A` is the operator of `sigma + epsilon/(d h)`.
 
+use std::sync::atomic::AtomicBool;
+
 use super::ConductionError;
 use super::mesh::BrickMesh;
 use super::operator::Operator;
-use super::pcg::{self, Tolerance, Watch, combine, dot};
+use super::pcg::{self, Tolerance, Watch, combine, dot, latched};
 use super::steady::{Boundary, Plain, mask};
 
 const SQRT_2: f64 = std::f64::consts::SQRT_2;
@@ -153,6 +155,9 @@ pub fn integrate(
     on_step: &mut dyn FnMut(&StepView<'_>) -> bool,
     watch: Watch<'_>,
 ) -> Result<Effort, ConductionError> {
+    let stopped = AtomicBool::new(false);
+    let progress = latched(watch, &stopped);
+    let watch = Watch { progress: &progress, ..watch };
     let mesh = problem.mesh;
     let n = mesh.nodes();
     let most = problem.conductivities.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
@@ -165,7 +170,7 @@ pub fn integrate(
     let (mut middle, mut end) = (start.clone(), start.clone());
     let mut force = vec![0.0; n];
     let residual = |u: &[f64], out: &mut Vec<f64>| {
-        stiff.flux(u, out);
+        stiff.flux(u, out, &|| watch.goes_on());
         for (r, b) in out.iter_mut().zip(&problem.boundary.loads) {
             *r = b - *r;
         }
@@ -284,13 +289,13 @@ impl<'a> Stage<'a> {
                 let mut field = vec![0.0; mesh.nodes()];
                 nodes.iter().for_each(|n| field[*n] = 1.0);
                 let mut load = vec![0.0; mesh.nodes()];
-                system.operator.flux(&field, &mut load);
+                system.operator.flux(&field, &mut load, &|| watch.goes_on());
                 load.iter_mut().for_each(|l| *l = -*l);
                 mask(&mut load, system.operator.inverse_diagonal());
                 let mut inner = vec![0.0; mesh.nodes()];
                 run(&mut system, &load, &mut inner, options.solver, effort, watch)?;
                 combine(1.0, &inner, 1.0, &mut field);
-                system.operator.flux(&field, &mut load);
+                system.operator.flux(&field, &mut load, &|| watch.goes_on());
                 let flux = nodes.iter().map(|n| load[*n]).sum();
                 Some(Electrode { nodes, field, flux })
             }
