@@ -4,6 +4,7 @@
 //! little-endian. The format has no unit; ours is the mm. It has no vertices either, so readers weld corners that are equal,
 //! or that fall into the same cell of a grid; [`Frame`] sees to it that a grid of a micrometre does no harm.
 
+use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, FRAC_PI_4};
 use std::io::SeekFrom;
 
 use super::layout::Placement;
@@ -42,13 +43,16 @@ const MARGIN_MM: f64 = 1e-4;
 /// Around a lattice point where voxels of a phase touch, surfaces lie less than a cell apart. Their vertices are found along
 /// the lattice's axes, turned by the placement, `d` away from the point. With the point in the middle of a cell they leave
 /// the cell where `d cos` or `d sin` exceeds half a cell. Where the turn is neither, the point is moved to the corner of a
-/// cell instead, and the four directions lead into four cells.
+/// cell instead, and the four directions lead into four cells. So do the four diagonals, on which the corners of crossing
+/// prisms lie; where the turn (45 degrees, say) would put those on the boundaries of cells, offsets are turned a little more.
 #[derive(Debug, Clone, Copy)]
 pub struct Frame {
     /// The placement.
     pub placement: Placement,
     /// Place of lattice points in the cell, in x, y and z, as a share of its edge.
     within: Point,
+    /// Turn of the offsets: the placement's, or a little more.
+    turn: Placement,
     /// Whether the lattice's planes are planes of the grid, so that everything moves together.
     together: bool,
 }
@@ -66,7 +70,24 @@ impl Frame {
         let together = along.min(across) < 1e-12
             && whole(cells)
             && placement.shift.iter().all(|s| whole(s / CELL_MM) || whole(s / CELL_MM + 0.5));
-        Self { placement, within: [in_plane, in_plane, 0.5], together }
+        Self { placement, within: [in_plane, in_plane, 0.5], turn: Self::turn(placement, cornered), together }
+    }
+
+    /// The turn of offsets by which their diagonals keep off the boundaries of cells, where these meet in lattice points.
+    fn turn(placement: Placement, cornered: bool) -> Placement {
+        let plain = Placement { shift: [0.0; 3], ..placement };
+        if !cornered {
+            return plain;
+        }
+        let angle = placement.sine.atan2(placement.cosine);
+        // From the boundary that is nearest to a diagonal.
+        let diagonal = (angle + FRAC_PI_4 + FRAC_PI_4).rem_euclid(FRAC_PI_2) - FRAC_PI_4;
+        let least = (MARGIN_MM / (FRAC_1_SQRT_2 * CELL_MM)).asin();
+        if diagonal.abs() >= least {
+            return plain;
+        }
+        let turned = angle + (least - diagonal.abs()).copysign(diagonal);
+        Placement { cosine: turned.cos(), sine: turned.sin(), ..plain }
     }
 
     /// The place of a vertex: its lattice point, its offset from it, and where there is a contact, on which side is void.
@@ -84,7 +105,7 @@ impl Frame {
             // In the corner of four cells a point joins what is on the side of void, not what is across the solid.
             offset = [f64::from(along) * MARGIN_MM, f64::from(across) * MARGIN_MM, 0.0];
         }
-        let offset = Placement { shift: [0.0; 3], ..self.placement }.place(offset);
+        let offset = self.turn.place(offset);
         std::array::from_fn(|k| point[k] + offset[k])
     }
 }

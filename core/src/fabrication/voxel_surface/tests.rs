@@ -65,6 +65,27 @@ fn assert_survives_welding(surface: &VoxelSurface<'_>, mesh: &[[Vertex; 3]], ang
     }
 }
 
+/// A cross of prisms on a spoke turned by 45 degrees, whose corners lay on the boundaries of a reader's cells.
+#[test]
+fn crossing_prisms_turned_by_45_degrees_survive_welding() {
+    let mut grid = VoxelGrid::new(0.5, 2, vec![4, 3, 3, 1, 2, 2]);
+    let slices: [&[u8]; 6] = [
+        &[1, 0, 0, 1, 0, 1, 1, 0, 0, 0, 1, 1, 0, 0, 1, 1],
+        &[1, 1, 0, 0, 1, 0, 1, 1, 1, 1, 1, 0],
+        &[0, 1, 0, 1, 1, 0, 0, 0, 0, 1, 1, 0],
+        &[0, 1, 1, 0],
+        &[0, 1, 0, 0, 0, 0, 1, 1],
+        &[0, 0, 1, 0, 0, 1, 0, 1],
+    ];
+    slices.iter().enumerate().for_each(|(i, labels)| grid.slice_mut(i).copy_from_slice(labels));
+    let surface = surface(&grid);
+    for turn in (0..8).map(|eighth| f64::from(eighth) * FRAC_PI_4) {
+        for phase in 0..2 {
+            assert_survives_welding(&surface, &triangles(&surface, phase), turn, &format!("phase {phase}"));
+        }
+    }
+}
+
 fn single(p: Point) -> [u32; 3] {
     p.map(|c| (c as f32 + 0.0).to_bits())
 }
