@@ -1,6 +1,8 @@
-//! How long work goes on before it asks again whether to stop: the longest gap of every kind of long work, one line each.
+//! How long work goes on before it asks again whether to stop: the longest gaps of every kind of long work, one line each;
+//! and of a morph how long it takes to return once it is to stop.
 //!
-//! One factorisation of the tangent counts as one gap: it cannot be stopped on its way.
+//! A factorisation of the tangent cannot be stopped on its way, nor can the analysis of its structure before the first; the
+//! morph and what is made of morphs show these as their longest gaps. Words after `--` choose the cases whose names have one.
 
 use std::path::Path;
 use std::sync::Mutex;
@@ -10,14 +12,19 @@ use voxelastica_core::conduction::case::{Problem, Regimes, solve};
 use voxelastica_core::conduction::pcg::Watch;
 use voxelastica_core::conduction::strip::{Model, Shape, Strip};
 use voxelastica_core::fabrication::fabricate;
-use voxelastica_core::input::FabricationKind;
+use voxelastica_core::fem::{MorphOptions, Resolution};
+use voxelastica_core::indentation::{self, solid::SolidOptions};
 use voxelastica_core::input::files::Format;
+use voxelastica_core::input::{FabricationKind, IndentationInput};
 use voxelastica_core::output::write::{WriteOptions, write_design};
+use voxelastica_core::progress::Share;
+use voxelastica_core::refine::refine;
+use voxelastica_core::results::verification::Model as SolverModel;
 use voxelastica_core::results::{EmbeddedOptions, verify_embedded};
 use voxelastica_core::{Design, DesignInput, Limits};
 
-/// The longest gaps that are shown.
-const SHOWN: usize = 4;
+/// The longest gaps that are shown: more than a refinement with two corrections has factorisations.
+const SHOWN: usize = 12;
 
 /// Listens to the questions of some work.
 struct Clock {
@@ -73,38 +80,78 @@ fn input(length: f64, size: f64, more: &str) -> DesignInput {
     }
 }
 
+fn is_chosen(what: &str) -> bool {
+    let mut words = std::env::args().skip(1).filter(|word| !word.starts_with('-')).peekable();
+    words.peek().is_none() || words.any(|word| what.contains(&word))
+}
+
 fn timed(what: &str, work: impl FnOnce(&Clock)) {
+    if !is_chosen(what) {
+        return;
+    }
     let (clock, start) = (Clock::new(), Instant::now());
     work(&clock);
     clock.report(what, start);
 }
 
+/// Stops some work after a time: how long it then takes to return.
+fn stopped(what: &str, after: f64, work: impl FnOnce(Share<'_>)) {
+    if !is_chosen(what) {
+        return;
+    }
+    let start = Instant::now();
+    let asked = Mutex::new(None);
+    work(&|_| {
+        let goes_on = start.elapsed().as_secs_f64() < after;
+        if !goes_on && let Ok(mut asked) = asked.lock() {
+            asked.get_or_insert(Instant::now());
+        }
+        goes_on
+    });
+    let total = start.elapsed().as_secs_f64();
+    match asked.into_inner() {
+        Ok(Some(asked)) => println!(
+            "{what}, to stop at {after} s: asked {:.0} ms later, returned after another {:.0} ms",
+            1e3 * (total - after - asked.elapsed().as_secs_f64()),
+            1e3 * asked.elapsed().as_secs_f64()
+        ),
+        _ => println!("{what}, to stop at {after} s: was done before"),
+    }
+}
+
 fn main() {
     let Ok(folder) = tempfile::tempdir() else { return };
     let fine = input(100.0, 0.2, "[decks]\nwrite = [\"voxel_solid\", \"voxel_shell\"]\n");
-    let mut design = None;
     timed("design, L = 100 mm, voxels of 0.2 mm", |clock| {
-        design = Design::compute_unless(&fine, Limits::default(), &|| !clock.ask(0.0)).ok();
+        let _ = Design::compute_unless(&fine, Limits::default(), &|| !clock.ask(0.0));
     });
-    let Some(design) = design else { return };
+    let Ok(design) = Design::compute(&fine, Limits::default()) else { return };
     println!("{} voxels a spoke", design.grid().phases().len());
     timed("  its decks and report", |clock| {
         let written = write_design(&design, folder.path(), WriteOptions::default(), &|_| clock.ask(0.0));
         assert!(written.is_ok());
     });
-    let mut strip = None;
     timed("  its strip for conduction", |clock| {
         let progress = |share: f64| clock.ask(share);
-        let watch = Watch { progress: &progress, span: [0.0, 1.0] };
-        strip = Strip::new_unless(&design, Model::Voxel, Shape::Morphed, [160, 24, 4], watch).ok();
+        let _ = morphed(&design, Watch { progress: &progress, span: [0.0, 1.0] });
     });
-    let Some(strip) = strip else { return };
     let conduction = voxelastica_core::input::ConductionInput::default();
     for (name, problem) in [("  steady heat", Problem::Heat), ("  steady current", Problem::Current)] {
         timed(name, |clock| {
             let progress = |share: f64| clock.ask(share);
             let watch = Watch { progress: &progress, span: [0.0, 1.0] };
+            let Some(strip) = morphed(&design, watch) else { return };
             let regimes = Regimes { steady: true, transient: false };
+            let _ = solve(&strip, problem, regimes, &conduction, watch);
+        });
+    }
+    let Ok(voxels) = Design::compute(&input(100.0, 0.5, ""), Limits::default()) else { return };
+    for (name, problem) in [("heat in time", Problem::Heat), ("current in time", Problem::Current)] {
+        timed(&format!("{name}, 67 000 voxels"), |clock| {
+            let progress = |share: f64| clock.ask(share);
+            let watch = Watch { progress: &progress, span: [0.0, 1.0] };
+            let Some(strip) = morphed(&voxels, watch) else { return };
+            let regimes = Regimes { steady: false, transient: true };
             let _ = solve(&strip, problem, regimes, &conduction, watch);
         });
     }
@@ -116,12 +163,47 @@ fn main() {
             assert!(made.is_ok() || matches!(made, Err(voxelastica_core::Error::Input(_))));
         });
     }
-    let Ok(voxels) = Design::compute(&input(100.0, 0.5, ""), Limits::default()) else { return };
-    timed("morph of 67 000 voxels (one factorisation)", |clock| {
+    timed("morph of 67 000 voxels", |clock| {
         let _ = verify_embedded(&voxels, &EmbeddedOptions::default(), &|share| clock.ask(share));
+    });
+    for seconds in [0.05, 0.2, 0.8, 1.5, 6.0, 7.5, 13.0, 14.0] {
+        stopped("morph of 67 000 voxels", seconds, |progress| {
+            let _ = verify_embedded(&voxels, &EmbeddedOptions::default(), progress);
+        });
+    }
+    timed("morph of a graded strip", |clock| {
+        let options = EmbeddedOptions { model: SolverModel::Graded, ..EmbeddedOptions::default() };
+        let _ = verify_embedded(&voxels, &options, &|share| clock.ask(share));
+    });
+    for (name, length, size, more) in [
+        ("refinement, 67 000 voxels", 100.0, 0.5, ""),
+        ("refinement, calibrated, 10 704 voxels", 40.0, 0.5, "match = \"calibrated\"\n"),
+        ("refinement, L = 40 mm, voxels of 1 mm", 40.0, 1.0, ""),
+    ] {
+        timed(name, |clock| {
+            let (input, options) = (input(length, size, more), EmbeddedOptions::default());
+            let _ = refine(&input, Limits::default(), 2, &options, &|share| clock.ask(share));
+        });
+    }
+    timed("dome pressed, graded", |clock| {
+        let options = SolidOptions {
+            resolution: Resolution::Graded(voxels.input().decks.calculix_graded_elements),
+            neighbours: true,
+            morph: MorphOptions::default(),
+        };
+        let pressed = indentation::solid::indent(&voxels, &IndentationInput::default(), &options, &|s| clock.ask(s));
+        assert!(pressed.is_ok());
+    });
+    timed("dome pressed, elastica", |clock| {
+        let pressed = indentation::elastica::indent(&voxels, &IndentationInput::default(), &|s| clock.ask(s));
+        assert!(pressed.is_ok());
     });
     timed("calibrated design", |clock| {
         let calibrated = input(100.0, 0.25, "match = \"calibrated\"\n");
         let _ = Design::compute_unless(&calibrated, Limits::default(), &|| !clock.ask(0.0));
     });
+}
+
+fn morphed(design: &Design, watch: Watch<'_>) -> Option<Strip> {
+    Strip::new_unless(design, Model::Voxel, Shape::Morphed, [160, 24, 4], watch).ok()
 }

@@ -340,11 +340,16 @@ fn what_does_not_fit_is_refused_and_what_is_cancelled_stops() {
     assert!(whole.is_ok() && asked.load(Ordering::Relaxed) > 20, "{asked:?}");
     for stop in [0, 1, 7, 20] {
         let asked = AtomicUsize::new(0);
-        let stopped =
-            verify_embedded(&design, &EmbeddedOptions::default(), &|_| asked.fetch_add(1, Ordering::Relaxed) < stop);
+        let go_on = |_| asked.fetch_add(1, Ordering::Relaxed) < stop;
+        let stopped = alone(|| verify_embedded(&design, &EmbeddedOptions::default(), &go_on));
         assert!(matches!(stopped, Err(Error::Cancelled)));
         assert_eq!(asked.load(Ordering::Relaxed), stop + 1);
     }
+}
+
+/// Runs work in a single thread: of several, each may have a question on its lips when another is told no.
+fn alone<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap().install(work)
 }
 
 #[test]
@@ -377,4 +382,27 @@ fn refinement_brings_the_strip_closer_and_is_computed_again_from_its_record() {
     let summary = voxelastica_core::output::Summary::of(&again).refinement.unwrap();
     assert_eq!(summary.error_after_percent, best);
     assert_eq!(summary.error_before_percent, refined.errors_percent[0]);
+}
+
+#[test]
+fn a_single_no_ends_a_refinement_wherever_it_is() {
+    let input = design(
+        "[target]\nkind = \"hemi-ellipsoid\"\n[strips]\ncount = 8\nlength_mm = 20.0\nhub_radius_mm = 2.0\nthickness_mm = \
+         1.0\n[materials]\nphases = [\"FLX9070\", \"FLX9095\"]\n[voxels]\nsize_mm = 0.5\n",
+    );
+    let (limits, options) = (voxelastica_core::Limits::default(), EmbeddedOptions::default());
+    let run = |stop: usize| {
+        let asked = AtomicUsize::new(0);
+        let go_on = |_| asked.fetch_add(1, Ordering::Relaxed) != stop;
+        let done = alone(|| voxelastica_core::refine::refine(input.input(), limits, 1, &options, &go_on));
+        (done, asked.into_inner())
+    };
+    let (whole, asked) = run(usize::MAX);
+    assert!(whole.is_ok());
+    // Many of the questions are asked while the next voxels are chosen among dozens of designs.
+    for stop in (0..16).map(|i| asked * i / 16) {
+        let (stopped, asked) = run(stop);
+        assert!(matches!(stopped, Err(Error::Cancelled)), "{stop}");
+        assert_eq!(asked, stop + 1);
+    }
 }

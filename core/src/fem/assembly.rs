@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::FemError;
 use super::element::{DOFS, ElementVector, MODES};
+use super::error::go_on;
 use super::model::Model;
 use super::pattern::Pattern;
 use crate::progress::Cancelled;
@@ -77,9 +78,7 @@ impl Forces {
 pub fn forces(model: &Model, state: &mut State, cancelled: Cancelled<'_>) -> Result<Option<Forces>, FemError> {
     let mut total = Forces::zero(model.mesh.nodes.len());
     for start in (0..model.mesh.elements.len()).step_by(BATCH) {
-        if cancelled() {
-            return Err(FemError::Cancelled);
-        }
+        go_on(cancelled)?;
         let elements = &model.mesh.elements[start..(start + BATCH).min(model.mesh.elements.len())];
         let answer = |i: usize, modes: &mut [f64; MODES]| {
             model.brick(start + i).residual(model.law, &state.of_element(&elements[i]), modes)
@@ -121,9 +120,7 @@ pub fn tangent(
 ) -> Result<bool, FemError> {
     values.fill(0.0);
     for start in (0..model.mesh.elements.len()).step_by(BATCH) {
-        if cancelled() {
-            return Err(FemError::Cancelled);
-        }
+        go_on(cancelled)?;
         let elements = &model.mesh.elements[start..(start + BATCH).min(model.mesh.elements.len())];
         let batch: Vec<_> = elements
             .par_iter()

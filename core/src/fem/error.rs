@@ -1,6 +1,7 @@
 //! What can go wrong with a finite-element solution.
 
 use super::element::InvertedElement;
+use crate::progress::{Cancelled, stops_at};
 
 /// Why there is no solution.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -59,4 +60,14 @@ pub enum FemError {
     /// The user cancelled.
     #[error("cancelled")]
     Cancelled,
+}
+
+/// Asks whether to go on.
+pub(super) fn go_on(cancelled: Cancelled<'_>) -> Result<(), FemError> {
+    if cancelled() { Err(FemError::Cancelled) } else { Ok(()) }
+}
+
+/// Asks at every so many items of a light loop whether to go on.
+pub(super) fn go_on_at(item: usize, cancelled: Cancelled<'_>) -> Result<(), FemError> {
+    if stops_at(item, cancelled) { Err(FemError::Cancelled) } else { Ok(()) }
 }

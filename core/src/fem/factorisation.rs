@@ -22,7 +22,9 @@ use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Accum, ColMut, ColRef, Conj, MatMut, Par, Side, Spec};
 
 use super::FemError;
+use super::error::{go_on, go_on_at};
 use super::pattern::Pattern;
+use crate::numerics::large_array::LargeArray;
 use crate::progress::Cancelled;
 
 /// Residual of a linear solution, relative to the right-hand side, above which factors count as useless.
@@ -37,7 +39,7 @@ const REFINEMENTS: usize = 3;
 /// Structure and values of the factors.
 pub struct Factorisation {
     symbolic: SymbolicCholesky<usize>,
-    values: Vec<f64>,
+    values: LargeArray,
     memory: MemBuffer,
     pivoting: Option<Pivoting>,
     negative: usize,
@@ -66,12 +68,12 @@ impl Factorisation {
     /// Finds the structure of the factors and takes the memory for them, unless that is more than `limit` bytes.
     ///
     /// # Errors
-    /// [`FemError::Memory`], [`FemError::Sparse`].
-    pub fn new(pattern: &Pattern, limit: Option<u64>) -> Result<Self, FemError> {
+    /// [`FemError::Memory`], [`FemError::Sparse`], [`FemError::Cancelled`].
+    pub fn new(pattern: &Pattern, limit: Option<u64>, cancelled: Cancelled<'_>) -> Result<Self, FemError> {
         let unknowns = pattern.unknowns();
         let sparse = |what: &dyn std::fmt::Debug| FemError::Sparse(format!("{what:?}"));
         // With the order as it is, faer analyses an upper triangle and factors a lower one.
-        let (columns, rows) = upper(pattern);
+        let (columns, rows) = upper(pattern, cancelled)?;
         let structure = SymbolicSparseColMatRef::new_checked(unknowns, unknowns, &columns, None, &rows);
         let parameters = CholeskySymbolicParams {
             supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
@@ -79,6 +81,7 @@ impl Factorisation {
         };
         let symbolic = factorize_symbolic_cholesky(structure, Side::Upper, SymmetricOrdering::Identity, parameters)
             .map_err(|e| sparse(&e))?;
+        go_on(cancelled)?;
         let scratch = symbolic
             .factorize_numeric_ldlt_scratch::<f64>(parallel(), Spec::default())
             .or(symbolic.factorize_numeric_intranode_lblt_scratch::<f64>(parallel(), Spec::default()))
@@ -89,9 +92,7 @@ impl Factorisation {
             return Err(refused());
         }
         let memory = MemBuffer::try_new(scratch).map_err(|_| refused())?;
-        let mut values = Vec::new();
-        values.try_reserve_exact(symbolic.len_val()).map_err(|_| refused())?;
-        values.resize(symbolic.len_val(), 0.0);
+        let values = LargeArray::zeros(symbolic.len_val()).map_err(|_| refused())?;
         Ok(Self { symbolic, values, memory, pivoting: None, negative: 0, definite: false })
     }
 
@@ -123,9 +124,7 @@ impl Factorisation {
         {
             return Ok(Some(x));
         }
-        if cancelled() {
-            return Err(FemError::Cancelled);
-        }
+        go_on(cancelled)?;
         self.factor_with_pivots(pattern, tangent);
         self.refined(pattern, tangent, right, cancelled)
     }
@@ -154,9 +153,7 @@ impl Factorisation {
         let mut direction: Vec<f64> = Vec::new();
         let mut before = 1.0;
         for step in 0..most {
-            if cancelled() {
-                return Err(FemError::Cancelled);
-            }
+            go_on(cancelled)?;
             let mut preconditioned = residual.clone();
             self.apply(&mut preconditioned, cancelled)?;
             let now = dot(&residual, &preconditioned);
@@ -167,9 +164,7 @@ impl Factorisation {
                 direction.iter_mut().zip(&preconditioned).for_each(|(d, p)| *d = p + kept * *d);
             }
             before = now;
-            if cancelled() {
-                return Err(FemError::Cancelled);
-            }
+            go_on(cancelled)?;
             let product = pattern.multiply(tangent, &direction);
             let curvature = dot(&direction, &product);
             // Not a number fails as well.
@@ -199,9 +194,7 @@ impl Factorisation {
         let mut residual = right.to_vec();
         let mut error = 1.0;
         for _ in 0..REFINEMENTS {
-            if cancelled() {
-                return Err(FemError::Cancelled);
-            }
+            go_on(cancelled)?;
             self.apply(&mut residual, cancelled)?;
             x.iter_mut().zip(&residual).for_each(|(x, d)| *x += d);
             let product = pattern.multiply(tangent, &x);
@@ -354,11 +347,13 @@ fn structure(pattern: &Pattern) -> SymbolicSparseColMatRef<'_, usize> {
 }
 
 /// The pattern's transpose: columns and ascending rows of the upper triangle.
-fn upper(pattern: &Pattern) -> (Vec<usize>, Vec<usize>) {
+fn upper(pattern: &Pattern, cancelled: Cancelled<'_>) -> Result<(Vec<usize>, Vec<usize>), FemError> {
     let n = pattern.unknowns();
+    let rows_of = |column: usize| &pattern.rows[pattern.columns[column]..pattern.columns[column + 1]];
     let mut columns = vec![0; n + 1];
-    for row in &pattern.rows {
-        columns[row + 1] += 1;
+    for column in 0..n {
+        go_on_at(column, cancelled)?;
+        rows_of(column).iter().for_each(|row| columns[row + 1] += 1);
     }
     for i in 0..n {
         columns[i + 1] += columns[i];
@@ -366,12 +361,13 @@ fn upper(pattern: &Pattern) -> (Vec<usize>, Vec<usize>) {
     let mut next = columns.clone();
     let mut rows = vec![0; pattern.rows.len()];
     for column in 0..n {
-        for row in &pattern.rows[pattern.columns[column]..pattern.columns[column + 1]] {
+        go_on_at(column, cancelled)?;
+        for row in rows_of(column) {
             rows[next[*row]] = column;
             next[*row] += 1;
         }
     }
-    (columns, rows)
+    Ok((columns, rows))
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

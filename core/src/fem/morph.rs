@@ -109,7 +109,7 @@ pub fn solve(
     if !options.from_flat {
         match straight(model, path, &mut solver, progress) {
             Ok((state, found)) if found.negative == 0 => {
-                return finish(model, path, &solver, state, found, 1, progress);
+                return finish(model, path, solver, state, found, 1, progress);
             }
             Ok(unstable) => direct = Some(unstable),
             Err(Stop::Diverged { iterations, residual }) => {
@@ -120,12 +120,12 @@ pub fn solve(
     }
     tried.push(format!("steps from flat, halved down to {SMALLEST_STEP:.4} of the path"));
     match (follow(model, path, &mut solver, progress), direct) {
-        (Ok((state, found, steps)), None) => finish(model, path, &solver, state, found, steps, progress),
+        (Ok((state, found, steps)), None) => finish(model, path, solver, state, found, steps, progress),
         (Ok((state, found, steps)), Some(_)) if found.negative == 0 => {
-            finish(model, path, &solver, state, found, steps, progress)
+            finish(model, path, solver, state, found, steps, progress)
         }
         (Err(Stop::Final(FemError::Cancelled)), _) => Err(FemError::Cancelled),
-        (_, Some((state, found))) => finish(model, path, &solver, state, found, 1, progress),
+        (_, Some((state, found))) => finish(model, path, solver, state, found, 1, progress),
         (Err(Stop::Final(FemError::Diverged { fraction, iterations, residual, .. })), None) => {
             Err(FemError::Diverged { fraction, iterations, residual, tried: tried.join("; ") })
         }
@@ -246,7 +246,7 @@ fn place(mesh: &Mesh, plane: usize, [x, z]: [f64; 2], angle: f64, displacements:
 fn finish(
     model: &Model,
     path: &Lead<'_>,
-    solver: &Solver<'_>,
+    solver: Solver<'_>,
     mut state: State,
     found: Equilibrium,
     steps: usize,
@@ -254,6 +254,9 @@ fn finish(
 ) -> Result<MorphSolution, FemError> {
     let length = path.guide().length();
     let ends = path.guide().ends(1.0);
+    // The factors are most of the memory: releasing it takes a while, so questions follow.
+    let unknowns = solver.unknowns();
+    drop(solver);
     let elements = ElementResults::of(model, &state, &|| !progress(1.0))?;
     if !model.law.needs_modes() {
         state.modes = Vec::<[f64; MODES]>::new();
@@ -266,7 +269,7 @@ fn finish(
         steps,
         residual: found.residual,
         negative: found.negative,
-        unknowns: solver.unknowns(),
+        unknowns,
         state,
     })
 }

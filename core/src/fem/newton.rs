@@ -6,6 +6,7 @@
 use super::FemError;
 use super::assembly::{Forces, State, forces, tangent};
 use super::contact::Contact;
+use super::error::go_on;
 use super::factorisation::Factorisation;
 use super::model::Model;
 use super::pattern::Pattern;
@@ -80,10 +81,8 @@ impl<'a> Solver<'a> {
     /// [`FemError::Memory`], [`FemError::Sparse`], [`FemError::Cancelled`].
     pub fn new(model: &'a Model, lift: bool, limit: Option<u64>, cancelled: Cancelled<'_>) -> Result<Self, FemError> {
         let pattern = Pattern::new(&model.mesh, lift, cancelled)?;
-        if cancelled() {
-            return Err(FemError::Cancelled);
-        }
-        let factors = Factorisation::new(&pattern, limit)?;
+        go_on(cancelled)?;
+        let factors = Factorisation::new(&pattern, limit, cancelled)?;
         let tangent = vec![0.0; pattern.rows.len()];
         Ok(Self { model, pattern, factors, tangent, contact: Contact::default() })
     }

@@ -4,9 +4,10 @@
 //! hub that is free to rise adds one unknown, numbered last, that all nodes of the hub's plane share.
 
 use super::FemError;
+use super::error::{go_on, go_on_at};
 use super::mesh::Mesh;
 use super::ordering::nested_dissection;
-use crate::progress::{Cancelled, stops_at};
+use crate::progress::Cancelled;
 
 /// What a node's displacement depends on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -47,9 +48,8 @@ impl Pattern {
     /// # Errors
     /// [`FemError::Cancelled`].
     pub fn new(mesh: &Mesh, lift: bool, cancelled: Cancelled<'_>) -> Result<Self, FemError> {
-        let go_on = || if cancelled() { Err(FemError::Cancelled) } else { Ok(()) };
         let order = nested_dissection(mesh);
-        go_on()?;
+        go_on(cancelled)?;
         let mut nodes = vec![NodeUnknowns::Fixed; mesh.nodes.len()];
         let mut rank = vec![u32::MAX; mesh.nodes.len()];
         for (i, node) in order.iter().enumerate() {
@@ -61,16 +61,13 @@ impl Pattern {
                 nodes[node] = NodeUnknowns::Lift;
             }
         }
-        let later = later_neighbours(mesh, &rank, order.len());
-        go_on()?;
+        let later = later_neighbours(mesh, &rank, order.len(), cancelled)?;
         let total = 3 * order.len() + usize::from(lift);
         let touches_lift = lifted(mesh, &nodes, &rank, order.len());
         let mut columns = Vec::with_capacity(total + 1);
         let mut rows = Vec::with_capacity(9 * later.places.len() + 6 * order.len());
         for i in 0..order.len() {
-            if stops_at(i, cancelled) {
-                return Err(FemError::Cancelled);
-            }
+            go_on_at(i, cancelled)?;
             for k in 0..3 {
                 columns.push(rows.len());
                 rows.extend(3 * i + k..3 * i + 3);
@@ -90,9 +87,7 @@ impl Pattern {
         columns.push(rows.len());
         let mut neighbours = Vec::with_capacity(mesh.elements.len());
         for (i, element) in mesh.elements.iter().enumerate() {
-            if stops_at(i, cancelled) {
-                return Err(FemError::Cancelled);
-            }
+            go_on_at(i, cancelled)?;
             neighbours.push(element_pairs(element, &rank, &later));
         }
         Ok(Self { nodes, columns, rows, neighbours })
@@ -224,29 +219,40 @@ impl LaterNeighbours {
     }
 }
 
-fn later_neighbours(mesh: &Mesh, rank: &[u32], free: usize) -> LaterNeighbours {
-    let pairs = || {
-        mesh.elements.iter().flat_map(|element| {
-            (0..8).flat_map(move |b| (0..b).map(move |a| [rank[element[a] as usize], rank[element[b] as usize]]))
-        })
+fn later_neighbours(
+    mesh: &Mesh,
+    rank: &[u32],
+    free: usize,
+    cancelled: Cancelled<'_>,
+) -> Result<LaterNeighbours, FemError> {
+    let pairs = |element: &[u32; 8]| {
+        let ranks = element.map(|node| rank[node as usize]);
+        (0..8)
+            .flat_map(move |b| (0..b).map(move |a| [ranks[a], ranks[b]]))
+            .filter(|p| p[0] != u32::MAX && p[1] != u32::MAX)
+            .map(|p| [p[0].min(p[1]), p[0].max(p[1])])
     };
-    let inner = || pairs().filter(|p| p[0] != u32::MAX && p[1] != u32::MAX).map(|p| [p[0].min(p[1]), p[0].max(p[1])]);
     let mut starts = vec![0_usize; free + 1];
-    for [low, _] in inner() {
-        starts[low as usize + 1] += 1;
+    for (i, element) in mesh.elements.iter().enumerate() {
+        go_on_at(i, cancelled)?;
+        pairs(element).for_each(|[low, _]| starts[low as usize + 1] += 1);
     }
     for i in 0..free {
         starts[i + 1] += starts[i];
     }
     let mut next = starts.clone();
     let mut places = vec![0_u32; starts[free]];
-    for [low, high] in inner() {
-        places[next[low as usize]] = high;
-        next[low as usize] += 1;
+    for (i, element) in mesh.elements.iter().enumerate() {
+        go_on_at(i, cancelled)?;
+        for [low, high] in pairs(element) {
+            places[next[low as usize]] = high;
+            next[low as usize] += 1;
+        }
     }
     // Sorted and without repetitions.
     let mut unique = LaterNeighbours { starts: vec![0], places: Vec::with_capacity(13 * free) };
     for i in 0..free {
+        go_on_at(i, cancelled)?;
         let list = &mut places[starts[i]..starts[i + 1]];
         list.sort_unstable();
         let before = unique.places.len();
@@ -257,7 +263,7 @@ fn later_neighbours(mesh: &Mesh, rank: &[u32], free: usize) -> LaterNeighbours {
         }
         unique.starts.push(unique.places.len());
     }
-    unique
+    Ok(unique)
 }
 
 /// Whether a free node shares an element with a node whose height is the last unknown.

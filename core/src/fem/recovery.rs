@@ -118,14 +118,31 @@ impl ElementResults {
     /// Largest principal strain of every phase; `None` for phases without an element.
     #[must_use]
     pub fn largest_by_phase(&self, phases: &[u8], count: usize) -> Vec<Option<f64>> {
-        let mut largest: Vec<Option<f64>> = vec![None; count];
-        for (phase, strain) in phases.iter().zip(&self.principal_strains) {
-            if let Some(place) = largest.get_mut(usize::from(*phase)) {
-                *place = Some(place.map_or(*strain, |p: f64| p.max(*strain)));
-            }
-        }
-        largest
+        by_phase(phases, count, self.principal_strains.iter().copied())
     }
+
+    /// Largest von Mises stress of every phase, of the elements' mean second Piola-Kirchhoff stress, MPa; `None` for phases
+    /// without an element.
+    #[must_use]
+    pub fn largest_von_mises_by_phase(&self, phases: &[u8], count: usize) -> Vec<Option<f64>> {
+        by_phase(phases, count, self.stresses.iter().map(von_mises))
+    }
+}
+
+fn by_phase(phases: &[u8], count: usize, values: impl Iterator<Item = f64>) -> Vec<Option<f64>> {
+    let mut largest: Vec<Option<f64>> = vec![None; count];
+    for (phase, value) in phases.iter().zip(values) {
+        if let Some(place) = largest.get_mut(usize::from(*phase)) {
+            *place = Some(place.map_or(value, |p: f64| p.max(value)));
+        }
+    }
+    largest
+}
+
+/// Von Mises stress.
+fn von_mises([xx, yy, zz, xy, yz, xz]: &Voigt) -> f64 {
+    let normal = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);
+    (0.5 * normal + 3.0 * (xy * xy + yz * yz + xz * xz)).sqrt()
 }
 
 /// `sqrt(1 + 2 E_1) - 1` for the largest eigenvalue `E_1` of a Green-Lagrange strain.
@@ -141,6 +158,13 @@ fn largest_principal(strain: &Voigt) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn von_mises_is_that_of_tension_and_of_shear() {
+        assert_eq!(von_mises(&[-7.0, 0.0, 0.0, 0.0, 0.0, 0.0]), 7.0);
+        assert!((von_mises(&[2.0, 2.0, 2.0, 0.0, 3.0, 0.0]) - 27.0_f64.sqrt()).abs() < 1e-12);
+        assert_eq!(by_phase(&[0, 2, 0], 3, [1.0, 5.0, 2.0].into_iter()), [Some(2.0), None, Some(5.0)]);
+    }
 
     #[test]
     fn the_principal_strain_of_a_shear_is_that_of_its_diagonal() {

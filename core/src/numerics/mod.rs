@@ -1,6 +1,7 @@
 //! The few numerical tools that several concepts share.
 
 pub(crate) mod arc_table;
+pub(crate) mod large_array;
 pub(crate) mod monotone_cubic;
 pub(crate) mod quadrature;
 pub(crate) mod root;

@@ -26,7 +26,7 @@ use crate::design::{Design, Limits};
 use crate::error::Error;
 use crate::input::DesignInput;
 use crate::input::model::RefineInput;
-use crate::progress::Share;
+use crate::progress::{Cancelled, Share};
 use crate::results::verification::Model;
 use crate::results::{EmbeddedOptions, EmbeddedVerification, verify_embedded};
 use crate::voxel::VoxelGrid;
@@ -67,7 +67,7 @@ pub fn refine(
 ) -> Result<Refinement, Error> {
     let options = EmbeddedOptions { model: Model::Voxel, ..*options };
     let part = 1.0 / (iterations + 1) as f64;
-    let design = Design::compute(input, limits)?;
+    let design = Design::compute_unless(input, limits, &|| !progress(0.0))?;
     let verification = verify_embedded(&design, &options, &|share| progress(part * share))?;
     let mut search = Search {
         limits,
@@ -94,7 +94,7 @@ pub fn refine(
             break;
         }
     }
-    recorded(search.best, limits, iterations, search.errors)
+    recorded(search.best, limits, iterations, search.errors, progress)
 }
 
 /// The strips solved so far.
@@ -123,7 +123,7 @@ impl Search<'_> {
         self.errors.iter().copied().fold(f64::INFINITY, f64::min)
     }
 
-    fn known(&self) -> Best<'_> {
+    fn known<'b>(&'b self, cancelled: Cancelled<'b>) -> Best<'b> {
         Best {
             design: &self.best.0,
             factors: &self.factors,
@@ -133,12 +133,15 @@ impl Search<'_> {
             solved: &self.solved,
             limits: self.limits,
             iterations: self.iterations,
+            cancelled,
         }
     }
 
     /// Solves the most promising corrections.
     fn advance(&mut self, [start, part]: [f64; 2]) -> Result<(), Error> {
-        let mut proposals = self.known().next(if self.is_small() { TRIALS } else { 1 });
+        let progress = self.progress;
+        let cancelled = || !progress(start);
+        let mut proposals = self.known(&cancelled).next(if self.is_small() { TRIALS } else { 1 })?;
         if !self.is_small() {
             proposals.truncate(1);
         }
@@ -153,8 +156,10 @@ impl Search<'_> {
     fn touch(&mut self, [start, part]: [f64; 2]) -> Result<(), Error> {
         let each = part / Best::TURNS as f64;
         for turn in 0..Best::TURNS {
-            if let Some(next) = self.known().touched(turn) {
-                self.solve(next, [start + each * turn as f64, each])?;
+            let at = start + each * turn as f64;
+            let progress = self.progress;
+            if let Some(next) = self.known(&|| !progress(at)).touched(turn)? {
+                self.solve(next, [at, each])?;
             }
         }
         Ok(())
@@ -198,11 +203,12 @@ fn recorded(
     limits: Limits,
     iterations: usize,
     errors_percent: Vec<f64>,
+    progress: Share<'_>,
 ) -> Result<Refinement, Error> {
     let mut input = design.input().clone();
     let correction = input.refine.take().map(|r| r.correction).unwrap_or_default();
     input.refine = Some(RefineInput { iterations, correction, errors_percent: errors_percent.clone() });
-    let design = Design::compute(&input, limits)?;
+    let design = Design::compute_unless(&input, limits, &|| !progress(1.0))?;
     verification.verification.provenance = crate::output::Provenance::of(design.input());
     Ok(Refinement { design, verification, errors_percent })
 }

@@ -7,8 +7,10 @@
 use nalgebra::DVector;
 
 use crate::design::{Design, Limits};
+use crate::error::Error;
 use crate::input::DesignInput;
 use crate::input::model::RefineInput;
+use crate::progress::Cancelled;
 use crate::results::MidlinePoint;
 use crate::voxel::VoxelGrid;
 
@@ -45,6 +47,8 @@ pub(super) struct Best<'a> {
     pub(super) solved: &'a [VoxelGrid],
     pub(super) limits: Limits,
     pub(super) iterations: usize,
+    /// Whether to stop: choosing computes dozens of designs.
+    pub(super) cancelled: Cancelled<'a>,
 }
 
 /// Mid-lines of a solved strip at the stations of its finite elements: by them, and by the elastica of its voxels; `None`
@@ -58,9 +62,12 @@ pub(super) fn lines(design: &Design, midline: &[MidlinePoint]) -> Option<[DVecto
 impl Best<'_> {
     /// The voxels, other than those solved, that promise to come closest to the target: at most `most` by every
     /// penalty, the most promising first; none where the elastica does not answer.
-    pub(super) fn next(&self, most: usize) -> Vec<Proposal> {
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`].
+    pub(super) fn next(&self, most: usize) -> Result<Vec<Proposal>, Error> {
         let mut promising: Vec<Proposal> = Vec::new();
-        for candidates in self.candidates().unwrap_or_default() {
+        for candidates in self.candidates()?.unwrap_or_default() {
             let end = promising.len() + most;
             for tried in candidates {
                 let known = |other: &Proposal| other.design.grid() == tried.design.grid();
@@ -73,56 +80,68 @@ impl Best<'_> {
             }
         }
         promising.sort_by(|a, b| a.expected.total_cmp(&b.expected));
-        promising
+        Ok(promising)
     }
 
     /// The best strip with another modulus about one knot, in turn the second of which is softer; none where that changes
     /// no voxel, or only to what was solved.
-    pub(super) fn touched(&self, turn: usize) -> Option<Proposal> {
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`].
+    pub(super) fn touched(&self, turn: usize) -> Result<Option<Proposal>, Error> {
         let (knot, touch) = (turn / TOUCHES.len(), TOUCHES[turn % TOUCHES.len()]);
         let change: [f64; KNOTS] = std::array::from_fn(|i| if i == knot { touch } else { 0.0 });
         let factors = corrected(self.design, self.factors, |share| at(&change, share));
-        let design = self.designed(&factors)?;
-        (!self.solved.contains(design.grid())).then_some(Proposal { factors, design, expected: f64::NAN })
+        let design = self.designed(&factors)?.filter(|design| !self.solved.contains(design.grid()));
+        Ok(design.map(|design| Proposal { factors, design, expected: f64::NAN }))
     }
 
     /// Number of turns of [`Self::touched`].
     pub(super) const TURNS: usize = KNOTS * TOUCHES.len();
 
     /// Corrections by every penalty.
-    fn candidates(&self) -> Option<[Vec<Proposal>; 2]> {
-        let own = self.lines.get(self.index)?;
+    fn candidates(&self) -> Result<Option<[Vec<Proposal>; 2]>, Error> {
+        let Some(own) = self.lines.get(self.index) else { return Ok(None) };
         let target = line(self.midline, |s| self.design.profile().position(s));
         let mapping = Mapping::new(own, self.lines);
-        let sensitivity = Sensitivity::new(self.design, self.midline, &(&own[0] - &target), &mapping)?;
-        let expect = |change: &[f64], size: f64| {
-            let factors = corrected(self.design, self.factors, |share| size * at(change, share));
-            self.expect(factors, &mapping, &target)
+        let misfit = &own[0] - &target;
+        let Some(sensitivity) = Sensitivity::new(self.design, self.midline, &misfit, &mapping) else {
+            return Ok(None);
         };
-        Some(PENALTIES.map(|(penalty, weights)| {
-            let changes = weights.iter().filter_map(|weight| sensitivity.change(penalty, *weight));
-            changes.flat_map(|change| SIZES.map(|size| expect(&change, size))).flatten().collect()
-        }))
+        let mut candidates = <[Vec<Proposal>; 2]>::default();
+        for ((penalty, weights), found) in PENALTIES.into_iter().zip(&mut candidates) {
+            for change in weights.iter().filter_map(|weight| sensitivity.change(penalty, *weight)) {
+                for size in SIZES {
+                    let factors = corrected(self.design, self.factors, |share| size * at(&change, share));
+                    found.extend(self.expect(factors, &mapping, &target)?);
+                }
+            }
+        }
+        Ok(Some(candidates))
     }
 
-    /// The design of a correction.
-    fn designed(&self, factors: &[f64]) -> Option<Design> {
+    /// The design of a correction; none where there is none.
+    fn designed(&self, factors: &[f64]) -> Result<Option<Design>, Error> {
         let mut input: DesignInput = self.design.input().clone();
         let correction = factors.to_vec();
         input.refine = Some(RefineInput { iterations: self.iterations, correction, errors_percent: Vec::new() });
-        Design::compute(&input, self.limits).ok()
+        match Design::compute_unless(&input, self.limits, self.cancelled) {
+            Err(Error::Cancelled) => Err(Error::Cancelled),
+            design => Ok(design.ok()),
+        }
     }
 
     /// What is to be expected of a correction.
-    fn expect(&self, factors: Vec<f64>, mapping: &Mapping, target: &DVector<f64>) -> Option<Proposal> {
-        let design = self.designed(&factors)?;
-        let path = design.shape_of_slices()?;
-        let [fine, coarse] = self.lines.get(self.index)?;
+    fn expect(&self, factors: Vec<f64>, mapping: &Mapping, target: &DVector<f64>) -> Result<Option<Proposal>, Error> {
+        let Some(design) = self.designed(&factors)? else { return Ok(None) };
+        let (Some(path), Some([fine, coarse])) = (design.shape_of_slices(), self.lines.get(self.index)) else {
+            return Ok(None);
+        };
         let moved = line(self.midline, |s| path.final_shape().position(s)) - coarse;
         let off = fine + mapping.fine(&moved) - target;
         let distances = off.as_slice().chunks_exact(2).map(|d| d[0].hypot(d[1]));
         let (largest, sum) = distances.fold((0.0_f64, 0.0), |(largest, sum), d| (largest.max(d), sum + d * d));
         let expected = largest + MEAN * (sum / self.midline.len() as f64).sqrt();
-        Some(Proposal { factors, design, expected })
+        Ok(Some(Proposal { factors, design, expected }))
     }
 }
