@@ -8,6 +8,7 @@ from xml.etree import ElementTree
 
 import pytest
 from conftest import design, read_json, run
+from decks.keywords import check_deck
 
 DOME = """
 [target]
@@ -86,3 +87,30 @@ def test_what_cannot_be_pressed_is_refused(program: Path, tmp_path: Path) -> Non
     missing = run("indent", tmp_path / "nothing")
     assert missing.code == 2
     assert "design.json" in missing.err
+
+
+def test_calculix_presses_the_same_dome(ccx: str, program: Path, tmp_path: Path) -> None:
+    more = "calculix_graded_elements = [24, 4, 2]\n[indentation]\ndepth_mm = 2.0\nsteps = 8"
+    folder, keep = design(DOME.format(more=more), tmp_path), tmp_path / "kept"
+    result = run("indent", folder, "--model", "calculix", "--keep", keep, "--ccx", ccx)
+    assert result.code == 0, result.err
+    found = read_json(folder / "indentation" / "calculix_flat.json")
+    assert run("indent", folder, "--model", "graded", "--ignore-neighbours").code == 0
+    inside = read_json(folder / "indentation" / "graded_flat.json")
+    assert found["model"] == "calculix" and len(found["curve"]) == 9
+    for figure, share in (("rigidity_n_mm", 0.02), ("tangent_n_mm", 0.02), ("volume_mm3", 1e-9)):
+        assert found[figure] == pytest.approx(inside[figure], rel=share), figure
+    assert found["work_nmm"] == pytest.approx(found["strain_energy_nmm"], rel=0.01)
+    assert found["largest_strain"][0]["strain"] == pytest.approx(inside["largest_strain"][0]["strain"], rel=0.05)
+    # What was solved is kept, and is the deck that a design file asks for.
+    assert (keep / "job.dat").stat().st_size > 0
+    assert check_deck(keep / "graded_solid_indentation.inp", dialect="calculix") == []
+
+
+def test_without_calculix_nothing_is_written(program: Path, tmp_path: Path) -> None:
+    folder = design(DOME.format(more=""), tmp_path)
+    result = run("indent", folder, "--model", "calculix", "--ccx", tmp_path / "nowhere")
+    assert result.code == 4 and "not found" in result.err and "--ccx" in result.err
+    result = run("indent", folder, "--model", "calculix", "--depth", 1000)
+    assert result.code == 2 and "depth_mm" in result.err
+    assert not (folder / "indentation").exists()

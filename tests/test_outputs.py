@@ -31,6 +31,8 @@ pattern = "{pattern}"
 [decks]
 style = "{style}"
 """
+#: Decks beside the morph that are written where they are asked for.
+UNDER_LOAD = ["graded_shell_indentation", "graded_solid_indentation", "voxel_shell_indentation"]
 
 
 def table(path: Path) -> tuple[list[str], np.ndarray]:
@@ -115,6 +117,22 @@ def test_small_decks_obey_the_reference_and_agree_with_the_design(
             assert midline[0][0] == 0 and midline[-1][0] == 20
             assert np.all(np.diff(midline[:, 0]) > 0)
             assert np.allclose(midline[:, 1:], 0)
+
+
+@pytest.mark.parametrize("extra", ["", '[indentation]\nindenter = "hub"\n', '[thrust]\nhub = "held"\n'])
+@pytest.mark.parametrize("style", ["parts", "flat"])
+def test_decks_under_load_obey_the_reference(program: Path, tmp_path: Path, style: str, extra: str) -> None:
+    text = SMALL.format(style=style, pattern="random") + f"write = {json.dumps(UNDER_LOAD)}\n{extra}"
+    folder = design(text, tmp_path)
+    decks = sorted(folder.glob("*/*.inp"))
+    assert [path.stem for path in decks] == sorted(UNDER_LOAD, key=lambda name: ("solid" in name, name))
+    for path in decks:
+        dialect = "calculix" if path.parent.name == "calculix" else "abaqus"
+        assert check_deck(path, dialect=dialect) == [], path
+        deck = parse_deck(path)
+        assert len(deck.steps) == 2
+        explicit = [step.explicit for step in deck.steps]
+        assert explicit == [path.name.startswith("voxel_shell")] * 2, path
 
 
 def test_meshio_reads_flat_decks_with_the_same_nodes_elements_and_sets(program: Path, tmp_path: Path) -> None:

@@ -47,8 +47,8 @@ pub enum Command {
     Sweep(SweepOptions),
     /// Test every layout of a small cell of two phases: moduli along x, y and z against their bounds.
     Micromechanics(MicromechanicsOptions),
-    /// List the materials of the library.
-    Materials,
+    /// List the materials of the library, or take a custom one from tensile tests.
+    Materials(MaterialsOptions),
     /// List the kinds of targets and the built-in examples, or print one of them.
     Targets(TargetsOptions),
     /// Print the JSON Schema of the design file.
@@ -268,6 +268,15 @@ pub struct IndentOptions {
     /// Share by which all moduli may be off: the force's band.
     #[arg(long, value_name = "PCT")]
     pub modulus_band: Option<f64>,
+    /// Pressure between indenter and spokes over their penetration, in CalculiX, N/mm^3.
+    #[arg(long, value_name = "N/MM3")]
+    pub contact_stiffness: Option<f64>,
+    /// The CalculiX program.
+    #[arg(long, value_name = "PROGRAM", default_value = "ccx")]
+    pub ccx: PathBuf,
+    /// Keep CalculiX's files in this folder.
+    #[arg(long, value_name = "DIR")]
+    pub keep: Option<PathBuf>,
     /// Folder to write into [default: the design's].
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
@@ -324,6 +333,8 @@ pub enum IndentModel {
     Graded,
     /// Every voxel in finite elements.
     Voxel,
+    /// The graded strip in CalculiX, by the deck graded_solid_indentation.
+    Calculix,
 }
 
 /// What presses.
@@ -456,6 +467,48 @@ pub enum ElementChoice {
     Enhanced,
     /// Trilinear bricks: too stiff on coarse meshes.
     Trilinear,
+}
+
+/// Options of `materials`.
+#[derive(Debug, Args)]
+pub struct MaterialsOptions {
+    /// What to do instead of listing them.
+    #[command(subcommand)]
+    pub command: Option<MaterialsCommand>,
+}
+
+/// What `materials` does besides listing.
+#[derive(Debug, Subcommand)]
+pub enum MaterialsCommand {
+    /// Print a custom material from tensile tests: modulus, its scatter over several tests, yield (0.2 % offset), break.
+    Fit(FitOptions),
+}
+
+/// Options of `materials fit`.
+#[derive(Debug, Args)]
+pub struct FitOptions {
+    /// Tensile curves, one a specimen: columns strain or strain_percent (or extension_mm) and stress_mpa (or force_n).
+    #[arg(required = true, value_name = "CURVE.csv")]
+    pub curves: Vec<PathBuf>,
+    /// Name of the material.
+    #[arg(long)]
+    pub name: String,
+    /// Its Poisson's ratio, which a tensile curve does not tell.
+    #[arg(long, allow_negative_numbers = true)]
+    pub poisson: f64,
+    /// Length over which the extension is measured, mm.
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    pub gauge_length_mm: Option<f64>,
+    /// Area of the specimen's cross-section before the test, mm^2.
+    #[arg(long, value_name = "MM2", allow_negative_numbers = true)]
+    pub area_mm2: Option<f64>,
+    /// Strains between which the modulus is taken [default: 0.0005 0.0025, or the straight part behind a toe or where there are
+    /// too few rows].
+    #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"], allow_negative_numbers = true)]
+    pub window: Option<Vec<f64>>,
+    /// Write the material into this file instead.
+    #[arg(short, long, value_name = "FILE.toml")]
+    pub output: Option<PathBuf>,
 }
 
 /// Options of `targets`.

@@ -46,6 +46,13 @@ impl Console {
         print(text.as_ref());
     }
 
+    /// Prints a line beside an answer that may be piped elsewhere, unless quiet: to standard error.
+    pub fn note(&self, line: impl AsRef<str>) {
+        if !self.quiet {
+            eprintln!("{}", line.as_ref());
+        }
+    }
+
     /// Prints a warning to standard error.
     pub fn warn(&self, line: impl AsRef<str>) {
         if !self.quiet {

@@ -23,7 +23,7 @@ fn main() -> ExitCode {
         Command::Indent(options) => commands::indent::run(&options, &console),
         Command::Sweep(options) => commands::sweep::run(&options, &console),
         Command::Micromechanics(options) => commands::micromechanics::run(&options, &console),
-        Command::Materials => commands::lists::materials(&console),
+        Command::Materials(options) => commands::materials::run(&options, &console),
         Command::Targets(options) => commands::lists::targets(&options, &console),
         Command::Schema => commands::lists::schema(&console),
     };

@@ -28,10 +28,11 @@ size_mm = 0.5
 
 /// Small enough to be read by a person.
 fn tiny(target: &str, materials: &str, decks: &str) -> Design {
+    let write = if decks.contains("write =") { "" } else { "write = [\"graded_solid\", \"voxel_solid\"]\n" };
     let dome = if target.contains("strip") { "" } else { "count = 8\nhub_radius_mm = 1.0" };
     design(&format!(
         "name = \"Kuppel für Zoë\"\n[target]\n{target}\n[strips]\n{dome}\nlength_mm = 10.0\nthickness_mm = 2.0\n\
-         {materials}\n[voxels]\nsize_mm = 1.0\n[decks]\nwrite = [\"graded_solid\", \"voxel_solid\"]\n\
+         {materials}\n[voxels]\nsize_mm = 1.0\n[decks]\n{write}\
          elements_per_voxel_edge = 1\ngraded_elements = [4, 2, 4]\ncalculix_graded_elements = [4, 2, 2]\n{decks}"
     ))
 }
@@ -75,6 +76,7 @@ fn decks_are_the_golden_ones() {
     let cases = [
         ("dome_parts", tiny(DOME, TWO, "solvers = [\"abaqus\"]")),
         ("dome_flat", tiny(DOME, TWO, "style = \"flat\"")),
+        ("pressed", tiny(DOME, TWO, "write = [\"graded_solid_indentation\"]")),
         ("held", tiny(DOME, &held, "solvers = [\"calculix\"]")),
         ("clamped", tiny(clamped, THREE, "solvers = [\"calculix\"]")),
         ("coupon", tiny(coupon, TWO, "solvers = [\"calculix\"]")),

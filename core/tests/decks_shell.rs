@@ -38,10 +38,12 @@ fn hemisphere(style: &str) -> Design {
     design(HEMISPHERE, &strips(8, 10.0), "free", TWO, &format!("size_mm = 0.5\n[decks]\nstyle = \"{style}\""))
 }
 
+const KINDS: &str = "\"graded_shell\", \"voxel_shell\", \"graded_shell_indentation\", \"voxel_shell_indentation\"";
+
 /// Small enough to be read by a person.
 fn tiny(style: &str) -> Design {
     let strips = "count = 3\nlength_mm = 10.0\nhub_radius_mm = 1.0\nthickness_mm = 2.0";
-    let rest = format!("size_mm = 2.0\n[decks]\nshell_elements = [4, 2]\nstyle = \"{style}\"");
+    let rest = format!("size_mm = 2.0\n[decks]\nwrite = [{KINDS}]\nshell_elements = [4, 2]\nstyle = \"{style}\"");
     design("kind = \"hemi-ellipsoid\"\naspect_ratio = 2.0", strips, "held", TWO, &rest)
 }
 
@@ -451,13 +453,109 @@ proptest! {
     }
 }
 
+/// Numbers of the first data line below a keyword line, in the last step that has one.
+fn last_data(text: &str, keyword: &str) -> Vec<String> {
+    let lines: Vec<&str> = text.lines().collect();
+    let at = lines.iter().rposition(|l| *l == keyword).unwrap_or_else(|| panic!("no {keyword}"));
+    lines[at + 1].split(',').map(str::to_owned).collect()
+}
+
+#[test]
+fn the_indenter_starts_above_what_it_covers_and_goes_down_by_the_depth() {
+    for style in STYLES {
+        for hub in ["free", "held"] {
+            let rest = format!("size_mm = 1.0\n[decks]\nwrite = [{KINDS}]\nstyle = \"{style}\"");
+            let design = design(HEMISPHERE, &strips(8, 10.0), hub, TWO, &rest);
+            let profile = design.profile();
+            let (top, radius) = (profile.z[profile.z.len() - 1], 0.339 * profile.rho[0]);
+            for (kind, half) in [(DeckKind::GradedShellIndentation, 1.0), (DeckKind::VoxelShellIndentation, 0.25)] {
+                let text = written(&design, kind);
+                let model = Model::read(&text);
+                let plate = &model.element_sets["INDENTER"];
+                let nodes: BTreeSet<Label> = plate.iter().flat_map(|e| model.elements[e].clone()).collect();
+                let heights = nodes.iter().map(|n| model.nodes[n][2]);
+                let [low, high] = heights.fold([f64::MAX, f64::MIN], |[low, high], z| [low.min(z), high.max(z)]);
+                assert!(low == high && low > half && low < half + 0.02, "{low} {high}");
+                // The edge is straight across spoke 1, at the radius.
+                let reach = nodes.iter().map(|n| model.nodes[n][0]).fold(0.0, f64::max);
+                assert!((reach - radius).abs() < 1e-6, "{reach} {radius}");
+                let explicit = kind == DeckKind::VoxelShellIndentation;
+                // A velocity acts for the unit of time that a step of equilibria takes.
+                let moved = |keyword: &str| {
+                    let data = last_data(&text, keyword);
+                    assert_eq!(data[..3], ["RP-HUB", "3", "3"]);
+                    data[3].parse::<f64>().unwrap()
+                };
+                let total = match (explicit, hub) {
+                    (true, _) => course(&text, hub == "held"),
+                    (false, "free") => moved("*BOUNDARY, TYPE=VELOCITY"),
+                    (false, _) => moved("*BOUNDARY") - top,
+                };
+                assert!((total + 10.0).abs() < 1e-3, "{style} {hub} {}: {total}", kind.name());
+            }
+        }
+    }
+}
+
+/// How far the amplitude PRESS moves the hub: the change of a height, or the integral of a velocity.
+fn course(text: &str, height: bool) -> f64 {
+    let lines: Vec<&str> = text.lines().collect();
+    let start = lines.iter().position(|l| *l == "*AMPLITUDE, NAME=PRESS").unwrap() + 1;
+    let rows = lines[start..].iter().take_while(|l| !l.starts_with('*'));
+    let numbers: Vec<f64> = rows.flat_map(|l| l.split(',')).map(|w| w.parse().unwrap()).collect();
+    let points: Vec<[f64; 2]> = numbers.chunks(2).map(|p| [p[0], p[1]]).collect();
+    let keyword = if height { "*BOUNDARY, AMPLITUDE=PRESS" } else { "*BOUNDARY, TYPE=VELOCITY, AMPLITUDE=PRESS" };
+    let value: f64 = last_data(text, keyword)[3].parse().unwrap();
+    let (first, last) = (points[0], points[points.len() - 1]);
+    if height {
+        // It starts where the morph ends: a jump would be ignored.
+        assert_eq!(first[1], 1.0);
+        return value * (last[1] - first[1]);
+    }
+    assert_eq!((first[1], last[1]), (0.0, 0.0));
+    value * points.windows(2).map(|p| 0.5 * (p[0][1] + p[1][1]) * (p[1][0] - p[0][0])).sum::<f64>()
+}
+
+#[test]
+fn the_loading_rate_sets_the_time_and_mass_scaling_is_only_written_where_asked_for() {
+    let text = |more: &str| {
+        let rest = format!("size_mm = 1.0\n[decks]\nwrite = [{KINDS}]\n[indentation]\ndepth_mm = 5.0\n{more}");
+        let design = design(HEMISPHERE, &strips(8, 10.0), "free", TWO, &rest);
+        let height = design.profile().z.iter().copied().fold(0.0, f64::max);
+        (written(&design, DeckKind::VoxelShellIndentation), height)
+    };
+    let time = |text: &str| last_data(text, "*DYNAMIC, EXPLICIT")[1].parse::<f64>().unwrap();
+    let (plain, height) = text("");
+    assert!((time(&plain) - 5.0 / height / 0.1).abs() < 1e-6);
+    assert!(!plain.contains("MASS SCALING"));
+    let (scaled, _) = text("loading_rate_per_s = 0.5\nmass_scaling = 100.0");
+    assert!((time(&scaled) - 5.0 / height / 0.5).abs() < 1e-6);
+    assert_eq!(scaled.matches("*FIXED MASS SCALING, FACTOR=100").count(), 1);
+}
+
+#[test]
+fn a_dome_that_is_not_as_deep_as_asked_is_said_to_have_no_deck() {
+    let rest = format!("size_mm = 1.0\n[decks]\nwrite = [{KINDS}]\n[indentation]\ndepth_mm = 80.0");
+    let design = design(HEMISPHERE, &strips(8, 10.0), "free", TWO, &rest);
+    let kinds: Vec<DeckKind> = deck::plan(&design).iter().map(|p| p.kind).collect();
+    assert_eq!(kinds, [DeckKind::GradedShell, DeckKind::VoxelShell]);
+    let warnings = design.warnings_for_files();
+    let about = |name: &str| warnings.iter().any(|w| w.contains(name) && w.contains("indentation.depth_mm"));
+    assert!(about("graded_shell_indentation") && about("voxel_shell_indentation"), "{warnings:?}");
+}
+
 /// Compares with `tests/golden`, or rewrites it where `VOXELASTICA_UPDATE_GOLDEN` is set.
 #[test]
 fn shell_decks_are_the_golden_ones() {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden");
     for style in STYLES {
         let design = tiny(style);
-        for (kind, file) in [(DeckKind::GradedShell, "graded_shell"), (DeckKind::VoxelShell, "voxel_shell")] {
+        for (kind, file) in [
+            (DeckKind::GradedShell, "graded_shell"),
+            (DeckKind::VoxelShell, "voxel_shell"),
+            (DeckKind::GradedShellIndentation, "graded_shell_indentation"),
+            (DeckKind::VoxelShellIndentation, "voxel_shell_indentation"),
+        ] {
             let text = written(&design, kind);
             let path = folder.join(format!("flower_{style}_abaqus_{file}.inp"));
             if std::env::var_os("VOXELASTICA_UPDATE_GOLDEN").is_some() {

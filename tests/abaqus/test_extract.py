@@ -118,6 +118,44 @@ def test_the_midline_comes_back(record: Recorder, morphed: dict, tmp_path: Path,
         assert results["reactions"][0]["axes_in_database"] == axes
 
 
+def pressed(midline: list) -> dict:
+    """A flower pressed by 10 mm: RF3 falls by 2 N, the strain energy grows by 11 N mm."""
+    data = database(midline, 3)
+    hub = next(of for of in data["history"] if of["label"] == 3)
+    hub["outputs"]["U3"] = [[0.0, 0.0], [0.5, 12.0], [1.0, 25.0]]
+    last = hub["outputs"]["RF3"][-1][1]
+    outputs = {
+        "U3": [[0.0, 25.0], [0.5, 20.0], [1.0, 15.0]],
+        "RF3": [[0.0, last], [0.5, last - 1.2], [1.0, last - 2.0]],
+    }
+    energy = {"outputs": {"ALLSE": [[0.0, 40.0], [0.5, 44.0], [1.0, 51.0]]}}
+    data["history"].append({"outputs": {"ALLSE": [[0.0, 0.0], [1.0, 40.0]]}})
+    data["press"] = [{"label": 3, "coordinates": [0.0, 0.0, 0.0], "outputs": outputs}, energy]
+    data["sets"].update({f"RP-HUB-{i}": [[9 + i, [0.0, 0.0, 1.0]]] for i in range(1, 9) if i != 3})
+    return data
+
+
+def test_a_pressed_dome_gives_force_over_depth(record: Recorder, morphed: dict, tmp_path: Path) -> None:
+    run = extract(record, tmp_path, pressed(morphed["midline"]), "", "", "3")
+    assert "written" in run.out, run.out
+    found = rows(tmp_path / "job_force_displacement.csv")
+    assert [row["depth_mm"] for row in found] == pytest.approx([0, 5, 10])
+    assert [row["force_n"] for row in found] == pytest.approx([0, 1.2, 2.0])
+    assert [row["force_per_spoke_n"] for row in found] == pytest.approx([0, 0.15, 0.25])
+    assert [row["strain_energy_nmm"] for row in found] == pytest.approx([0, 4, 11])
+    # The mid-line is still that of the morph.
+    results = json.loads((tmp_path / "job_results.json").read_text(encoding="ascii"))
+    assert results["step"] == "MORPH" and results["force_displacement"]["spokes"] == 8
+
+
+def test_a_press_that_lacks_its_history(record: Recorder, morphed: dict, tmp_path: Path) -> None:
+    data = pressed(morphed["midline"])
+    del data["press"][0]["outputs"]["U3"]
+    run = extract(record, tmp_path, data, "", "", "3")
+    assert "step PRESS has no history of U3 at RP-HUB" in run.out
+    assert [path.name for path in tmp_path.iterdir()] == ["job.odb"]
+
+
 def test_both_pythons_write_the_same(record: Recorder, record27: Recorder, morphed: dict, tmp_path: Path) -> None:
     texts = []
     for i, recorder in enumerate((record, record27)):

@@ -1,4 +1,4 @@
-"""Results of a morph: the mid-line in order and the reactions by increment, as CSV and JSON.
+"""Results of a morph: the mid-line in order and the reactions by increment, as CSV and JSON; force over depth of a press.
 
 The mid-line is what `voxelastica compare` takes: s_mm,x_mm,z_mm from the rim, x toward the hub, z up, both from where the
 rim is at the end. Reactions are in the spoke's axes: 1 inward, 2 across, 3 up, N and N mm.
@@ -13,7 +13,7 @@ import os
 
 from odbAccess import openOdb
 
-from . import VoxelasticaError, design as designs
+from . import VoxelasticaError, design as designs, indentation
 from .messages import say
 
 TYPE_CHECKING = False
@@ -53,6 +53,9 @@ def extract(path, design_path="", folder="", spoke=1):
         "reactions": (target + "_reactions.csv", table(*reaction_rows(results["reactions"]))),
         "results": (target + "_results.json", json.dumps(results, indent=1, sort_keys=True) + "\n"),
     }
+    if "force_displacement" in results:
+        rows = results["force_displacement"]["rows"]
+        texts["force_displacement"] = (target + "_force_displacement.csv", table(indentation.HEADER, rows))
     for name in sorted(texts):
         _write(*texts[name])
     points, increments = len(results["midline_mm"]), len(results["reactions"][0]["time"])
@@ -62,10 +65,11 @@ def extract(path, design_path="", folder="", spoke=1):
 
 def read(odb, spoke):
     # type: (Odb, int) -> dict[str, Any]
-    """Mid-line and reactions of the last step of an open database."""
+    """Mid-line and reactions of the morph, or else of the last step, of an open database; the curve of a press."""
     if not odb.steps.keys():
         raise VoxelasticaError("the database has no step: the job stopped before its analysis began")
-    name = list(odb.steps.keys())[-1]
+    pressed = indentation.is_pressed(odb)
+    name = indentation.MORPH if pressed else list(odb.steps.keys())[-1]
     step = odb.steps[name]
     if not len(step.frames):
         raise VoxelasticaError("step %s has no frame yet: the job has not converged or still runs" % name)
@@ -78,7 +82,10 @@ def read(odb, spoke):
     reactions = [rim, _reactions(odb, step, "RP-HUB" + suffix, inward, rim["axes_in_database"])]
     if suffix and "RP-HUB" in odb.rootAssembly.nodeSets.keys():
         reactions.append(_reactions(odb, step, "RP-HUB", (1.0, 0.0), "global"))
-    return {"midline_mm": line, "reactions": reactions, "step": name, "time": frame.frameValue, "spoke": spoke}
+    found = {"midline_mm": line, "reactions": reactions, "step": name, "time": frame.frameValue, "spoke": spoke}
+    if pressed:
+        found["force_displacement"] = indentation.force_displacement(odb, lambda of, at: _history(odb, of, at))
+    return found
 
 
 def _nodes(odb, name):
@@ -150,16 +157,8 @@ def _reactions(odb, step, name, inward, axes=""):
 
     ``axes``: those of the history, "local" or "global"; empty: as the point's motion shows.
     """
-    node = _nodes(odb, name)[0]
-    outputs = None
-    for key in step.historyRegions.keys():
-        region = step.historyRegions[key]
-        here = region.point.node
-        if here is not None and here.label == node.label and "RF1" in region.historyOutputs.keys():
-            # Nodes of the assembly and of instances are numbered on their own: the place tells them apart.
-            if _apart(here.coordinates, node.coordinates) < 1e-6:
-                outputs = region.historyOutputs
-    if outputs is None:
+    outputs = _history(odb, step, name)
+    if not outputs:
         raise VoxelasticaError("the last step has no history of RF at %s" % name)
     lacking = [kind for kind in _FORCES if kind not in outputs.keys()]
     if lacking:
@@ -176,6 +175,21 @@ def _reactions(odb, step, name, inward, axes=""):
             ]
             columns[one], columns[two] = [a for a, _ in turned], [b for _, b in turned]
     return {"node_set": name, "time": times, "axes_in_database": axes, "values": columns}
+
+
+def _history(odb, step, name):
+    # type: (Odb, OdbStep, str) -> Any
+    """History outputs at a reference point; nothing where there are none."""
+    node = _nodes(odb, name)[0]
+    outputs = {}  # type: Any
+    for key in step.historyRegions.keys():
+        region = step.historyRegions[key]
+        here = region.point.node
+        if here is not None and here.label == node.label and "RF3" in region.historyOutputs.keys():
+            # Nodes of the assembly and of instances are numbered on their own: the place tells them apart.
+            if _apart(here.coordinates, node.coordinates) < 1e-6:
+                outputs = region.historyOutputs
+    return outputs
 
 
 def history_axes(moves, inward):

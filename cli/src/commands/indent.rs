@@ -5,8 +5,11 @@ use voxelastica_core::indentation::output::write;
 use voxelastica_core::indentation::solid::{self, SolidOptions};
 use voxelastica_core::indentation::{Indentation, elastica};
 use voxelastica_core::input::{Bending, IndentationInput, Indenter};
+use voxelastica_core::results::pressed;
+use voxelastica_core::solver::ccx::{Ccx, Status};
 use voxelastica_core::{Design, Error};
 
+use super::work_folder::WorkFolder;
 use super::{designed, figures};
 use crate::args::{BendingChoice, IndentModel, IndentOptions, IndenterChoice};
 use crate::console::Console;
@@ -24,12 +27,14 @@ pub fn run(options: &IndentOptions, console: &Console) -> Result<u8, Error> {
         !console.is_cancelled()
     };
     let found = match options.model {
-        IndentModel::Elastica => elastica::indent(&design, &input, &progress),
-        IndentModel::Graded => solid::indent(&design, &input, &solids(options, &design), &progress),
-        IndentModel::Voxel => solid::indent(&design, &input, &solids(options, &design), &progress),
+        IndentModel::Elastica => elastica::indent(&design, &input, &progress).map_err(Error::from),
+        IndentModel::Graded | IndentModel::Voxel => {
+            solid::indent(&design, &input, &solids(options, &design), &progress).map_err(Error::from)
+        }
+        IndentModel::Calculix => by_calculix(&design, &input, options, &progress),
     };
     bar.finish_and_clear();
-    let found = found.map_err(|e| located(e.into()))?;
+    let found = found.map_err(located)?;
     report(&found, &design, console);
     let folder = options.output.as_ref().unwrap_or(&options.folder);
     for file in write(&design, &input, std::slice::from_ref(&found), folder)? {
@@ -39,6 +44,19 @@ pub fn run(options: &IndentOptions, console: &Console) -> Result<u8, Error> {
         console.warn(warning);
     }
     Ok(0)
+}
+
+/// Presses one spoke in CalculiX; half of the way is the morph.
+fn by_calculix(
+    design: &Design,
+    input: &IndentationInput,
+    options: &IndentOptions,
+    progress: &dyn Fn(f64) -> bool,
+) -> Result<Indentation, Error> {
+    let ccx = Ccx { executable: options.ccx.clone(), ..Ccx::default() };
+    let work = WorkFolder::new(options.keep.as_deref())?;
+    let steps = |status: Status| progress(0.5 * (status.step.saturating_sub(1) as f64 + status.share));
+    pressed::press(design, input, &ccx, work.path(), &steps)
 }
 
 fn solids(options: &IndentOptions, design: &Design) -> SolidOptions {
@@ -55,7 +73,8 @@ fn parameters(design: &Design, options: &IndentOptions) -> IndentationInput {
     input.depth_mm = options.depth.or(input.depth_mm);
     input.indenter_diameter_mm = options.indenter_diameter.or(input.indenter_diameter_mm);
     input.steps = options.steps.unwrap_or(input.steps);
-    input.modulus_band_percent = options.modulus_band.unwrap_or(input.modulus_band_percent);
+    input.contact_stiffness_n_mm3 = options.contact_stiffness.unwrap_or(input.contact_stiffness_n_mm3);
+    input.modulus_band_percent = options.modulus_band.or(input.modulus_band_percent);
     if let Some(indenter) = options.indenter {
         input.indenter = match indenter {
             IndenterChoice::Flat => Indenter::Flat,
@@ -75,13 +94,14 @@ fn report(found: &Indentation, design: &Design, console: &Console) {
     let Some(last) = found.curve.last() else { return };
     let thickness = design.input().strips.thickness_mm;
     console.say(format!(
-        "force     {} N a spoke at {} mm, {} N on the dome; of {} % {} to {} N",
+        "force     {} N a spoke at {} mm, {} N on the dome; {} to {} N by {} % ({})",
         figures(last.force_n),
         figures(last.depth_mm),
         figures(last.force_n * found.spokes as f64),
-        found.modulus_band_percent,
         figures(last.force_n * (1.0 - found.modulus_band_percent / 100.0)),
         figures(last.force_n * (1.0 + found.modulus_band_percent / 100.0)),
+        figures(found.modulus_band_percent),
+        found.modulus_band_from.describe(),
     ));
     console.say(format!(
         "stiffness K = {} N/mm a spoke (slope up to {thickness} mm), {} N/mm at no depth",
@@ -105,6 +125,7 @@ fn report(found: &Indentation, design: &Design, console: &Console) {
     }
     for phase in &found.largest_strain {
         let limit = phase.limit.map_or_else(String::new, |l| format!(" of {:.2} %", 100.0 * l));
-        console.say(format!("strain    at most {:.2} %{limit} in {}", 100.0 * phase.strain, phase.label));
+        let yields = phase.yield_strain.map_or_else(String::new, |y| format!(", yields at {:.2} %", 100.0 * y));
+        console.say(format!("strain    at most {:.2} %{limit} in {}{yields}", 100.0 * phase.strain, phase.label));
     }
 }

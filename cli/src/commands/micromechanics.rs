@@ -144,15 +144,5 @@ fn phase(text: &str, role: &str) -> Result<Material, InputError> {
         return Err(InputError::new("", "", format!("the material \"{text}\" is not known"))
             .help(format!("known are: {}; or write MPa:POISSON, such as 3.1:0.3", names.join(", "))));
     };
-    Ok(Material {
-        name: role.to_owned(),
-        modulus_mpa,
-        poisson,
-        density_kg_m3: None,
-        conductivity_w_mk: None,
-        specific_heat_j_kgk: None,
-        relative_permittivity: None,
-        electrical_conductivity_s_m: None,
-        max_strain: None,
-    })
+    Ok(Material::new(role, modulus_mpa, poisson))
 }

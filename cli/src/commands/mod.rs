@@ -6,10 +6,12 @@ pub mod design;
 pub mod fabricate;
 pub mod indent;
 pub mod lists;
+pub mod materials;
 pub mod micromechanics;
 pub mod sweep;
 pub mod verify;
 
+mod work_folder;
 use std::path::Path;
 
 use voxelastica_core::output::Provenance;

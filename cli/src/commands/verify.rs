@@ -10,6 +10,7 @@ use voxelastica_core::results::{
 use voxelastica_core::solver::ccx::{Ccx, Status};
 use voxelastica_core::{Design, Error};
 
+use super::work_folder::WorkFolder;
 use super::{MISSED, designed, require_unchanged};
 use crate::args::{ModelChoice, SolverChoice, VerifyOptions};
 use crate::console::Console;
@@ -142,20 +143,13 @@ fn deck(design: &Design, options: &VerifyOptions, model: Model, console: &Consol
     if let Some(threads) = options.threads {
         ccx.threads = usize::from(threads);
     }
-    let temporary = tempfile::tempdir().map_err(|e| Error::output(std::env::temp_dir(), &e))?;
-    let work = match &options.keep {
-        Some(folder) => {
-            std::fs::create_dir_all(folder).map_err(|e| Error::output(folder, &e))?;
-            folder.as_path()
-        }
-        None => temporary.path(),
-    };
+    let work = WorkFolder::new(options.keep.as_deref())?;
     let bar = console.bar(1000, "{msg} [{wide_bar}] {percent} % {elapsed}", "solving");
     let progress = |status: Status| {
         bar.set_position((1000.0 * status.share) as u64);
         !console.is_cancelled()
     };
-    let result = verify(design, &options.folder, model, &ccx, work, &progress);
+    let result = verify(design, &options.folder, model, &ccx, work.path(), &progress);
     bar.finish_and_clear();
     result
 }

@@ -1,7 +1,9 @@
 //! The whole flower as shells with a smooth outline, the modulus a nodal field.
 
 use super::keywords::heading::heading;
+use super::pressing::{Pressing, parameters};
 use super::shell::ShellModel;
+use super::shell_press::Procedure;
 use super::sink::Sink;
 use super::{Deck, DeckError};
 use crate::design::Design;
@@ -23,6 +25,13 @@ impl<'a> GradedShell<'a> {
         let sheet = Sheet::new(stations, vec![across; along], Spacing::Width(widths));
         Self { model: ShellModel::new(design, sheet, moduli, Some(across / 2)) }
     }
+
+    /// The same, pressed after the morph.
+    pub(super) fn pressed(design: &'a Design) -> Result<Self, &'static str> {
+        let pressing = Pressing::new(design, parameters(design), 0.5 * design.input().strips.thickness_mm)?;
+        let Self { model } = Self::new(design);
+        Ok(Self { model: model.pressed(Procedure::Standard, pressing) })
+    }
 }
 
 impl Deck for GradedShell<'_> {
@@ -43,7 +52,7 @@ impl Deck for GradedShell<'_> {
             model.element()
         )];
         paragraphs.extend(model.paragraphs());
-        heading(sink, &model.design.input().name, "graded shell", provenance, &paragraphs)?;
+        heading(sink, &model.design.input().name, &model.title("graded shell"), provenance, &paragraphs)?;
         model.write(sink, |sink| model.phase_sets(sink))
     }
 }

@@ -1,7 +1,7 @@
 //! One spoke as a solid with a smooth outline, its modulus a nodal field.
 
 use super::keywords::heading::heading;
-use super::keywords::{elements, initial, materials, sets};
+use super::keywords::{elements, initial, materials, nodes, sets};
 use super::sink::Sink;
 use super::solid::SolidModel;
 use super::{Deck, DeckError};
@@ -12,7 +12,7 @@ use crate::output::Provenance;
 
 /// The deck.
 pub(super) struct GradedSolid<'a> {
-    model: SolidModel<'a>,
+    pub model: SolidModel<'a>,
     /// Designed modulus at every plane of nodes, MPa.
     moduli: Vec<f64>,
 }
@@ -38,6 +38,52 @@ impl<'a> GradedSolid<'a> {
             }
         }
         runs
+    }
+
+    /// Everything up to the amplitudes; `paragraphs`, `nodes` and what `more` writes are added to heading, nodes and elements.
+    pub(super) fn model(
+        &self,
+        sink: &mut Sink<'_>,
+        provenance: &Provenance,
+        title: &str,
+        more_paragraphs: &[String],
+        more_nodes: &[(&str, u64, [f64; 3])],
+        more: impl FnOnce(&mut Sink<'_>) -> Result<(), DeckError>,
+    ) -> Result<(), DeckError> {
+        let model = &self.model;
+        let phases = model.design.phases();
+        let field = if model.layout.is_abaqus() { "Field variable 1" } else { "The temperature" };
+        let mut paragraphs = vec![format!(
+            "Model: one spoke with its smooth outline, {} elements, the designed modulus as a nodal field. {field} of a \
+             node is its modulus in MPa; the material's table over it is exact, with Poisson's ratio and density mixed by \
+             volume.",
+            model.element
+        )];
+        paragraphs.extend(model.paragraphs());
+        paragraphs.push("PHASE-<NAME>: elements whose mixture contains the phase.".to_owned());
+        paragraphs.extend_from_slice(more_paragraphs);
+        heading(sink, &model.design.input().name, title, provenance, &paragraphs)?;
+        model.model(sink, |sink| {
+            nodes::more_nodes(sink, more_nodes)?;
+            elements::elements(sink, &model.block, &model.element, "SPOKE")?;
+            for (i, phase) in phases.phases().iter().enumerate() {
+                let runs = self.runs(i);
+                if !runs.is_empty() {
+                    sets::element_ranges(sink, &format!("PHASE-{}", phase.label()), runs.into_iter())?;
+                }
+            }
+            model.section(sink, "SPOKE", "GRADED")?;
+            more(sink)
+        })?;
+        model.section_controls(sink)?;
+        materials::graded(sink, "GRADED", phases, model.law, model.layout)
+    }
+
+    /// Amplitudes and the modulus field.
+    pub(super) fn field(&self, sink: &mut Sink<'_>) -> Result<(), DeckError> {
+        let model = &self.model;
+        model.amplitudes(sink)?;
+        initial::modulus_field(sink, model.layout, &model.prefix(), &model.block, &self.moduli)
     }
 }
 
@@ -68,32 +114,8 @@ impl Deck for GradedSolid<'_> {
     }
 
     fn write(&self, provenance: &Provenance, sink: &mut Sink<'_>) -> Result<(), DeckError> {
-        let model = &self.model;
-        let phases = model.design.phases();
-        let field = if model.layout.is_abaqus() { "Field variable 1" } else { "The temperature" };
-        let mut paragraphs = vec![format!(
-            "Model: one spoke with its smooth outline, {} elements, the designed modulus as a nodal field. {field} of a \
-             node is its modulus in MPa; the material's table over it is exact, with Poisson's ratio and density mixed by \
-             volume.",
-            model.element
-        )];
-        paragraphs.extend(model.paragraphs());
-        paragraphs.push("PHASE-<NAME>: elements whose mixture contains the phase.".to_owned());
-        heading(sink, &model.design.input().name, "graded solid", provenance, &paragraphs)?;
-        model.model(sink, |sink| {
-            elements::elements(sink, &model.block, &model.element, "SPOKE")?;
-            for (i, phase) in phases.phases().iter().enumerate() {
-                let runs = self.runs(i);
-                if !runs.is_empty() {
-                    sets::element_ranges(sink, &format!("PHASE-{}", phase.label()), runs.into_iter())?;
-                }
-            }
-            model.section(sink, "SPOKE", "GRADED")
-        })?;
-        model.section_controls(sink)?;
-        materials::graded(sink, "GRADED", phases, model.law, model.layout)?;
-        model.amplitudes(sink)?;
-        initial::modulus_field(sink, model.layout, &model.prefix(), &model.block, &self.moduli)?;
-        model.step(sink)
+        self.model(sink, provenance, "graded solid", &[], &[], |_| Ok(()))?;
+        self.field(sink)?;
+        self.model.step(sink)
     }
 }

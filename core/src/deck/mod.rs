@@ -11,12 +11,15 @@
 mod conduction;
 mod graded_shell;
 mod graded_solid;
+mod graded_solid_indentation;
 pub(crate) mod keywords;
 mod layout;
 mod nastran;
 pub(crate) mod number;
+mod pressing;
 pub(crate) mod schedule;
 mod shell;
+mod shell_press;
 mod sink;
 pub(crate) mod solid;
 pub mod unit_cell;
@@ -26,10 +29,12 @@ mod voxel_solid;
 use std::io::{self, Write};
 
 use crate::design::Design;
+use crate::input::IndentationInput;
 use crate::input::model::{DeckKind, DeckSolver};
 use crate::output::Provenance;
 use crate::progress::{Cancelled, Progress, never};
 use conduction::{Carrier, Conduction};
+use graded_solid_indentation::GradedSolidIndentation;
 use sink::Sink;
 
 /// A deck that can be written, and how large it will be.
@@ -106,6 +111,16 @@ pub(crate) fn offered(design: &Design) -> Vec<(DeckKind, DeckSolver)> {
     found
 }
 
+/// Decks under load that a design asks for and that none of its solvers gets, with the reason.
+pub(crate) fn refused_indentations(design: &Design) -> impl Iterator<Item = (DeckKind, &'static str)> {
+    let decks = &design.input().decks;
+    decks.write.iter().filter(|kind| kind.is_indentation()).filter_map(|kind| {
+        let mut reasons = decks.solvers.iter().map(|solver| prepare(design, *kind, *solver).err());
+        let first = reasons.next().flatten()?;
+        reasons.all(|reason| reason.is_some()).then_some((*kind, first))
+    })
+}
+
 fn plan_one(
     design: &Design,
     kind: DeckKind,
@@ -142,6 +157,24 @@ pub fn write(
 ) -> Result<(), DeckError> {
     let deck = prepare(design, plan.kind, plan.solver)
         .map_err(|reason| DeckError::NotOffered { path: plan.relative_path(), reason })?;
+    let mut sink = Sink::new(out, progress);
+    deck.write(provenance, &mut sink)?;
+    sink.finish()
+}
+
+/// Writes the CalculiX deck of one spoke under load with parameters that need not be the design's own.
+///
+/// # Errors
+/// As [`write()`].
+pub fn write_pressed_solid(
+    design: &Design,
+    input: &IndentationInput,
+    provenance: &Provenance,
+    out: &mut dyn Write,
+    progress: Progress<'_>,
+) -> Result<(), DeckError> {
+    let refuse = |reason| DeckError::NotOffered { path: DeckKind::GradedSolidIndentation.name().to_owned(), reason };
+    let deck = GradedSolidIndentation::new(design, input.clone()).map_err(refuse)?;
     let mut sink = Sink::new(out, progress);
     deck.write(provenance, &mut sink)?;
     sink.finish()
@@ -185,9 +218,19 @@ fn prepare<'a>(design: &'a Design, kind: DeckKind, solver: DeckSolver) -> Result
         (DeckKind::GradedHeat, _) => Ok(Box::new(Conduction::graded(design, solver, Carrier::Heat)?)),
         (DeckKind::VoxelCurrent, _) => Ok(Box::new(Conduction::voxels(design, solver, Carrier::Current)?)),
         (DeckKind::GradedCurrent, _) => Ok(Box::new(Conduction::graded(design, solver, Carrier::Current)?)),
+        (DeckKind::GradedSolidIndentation, DeckSolver::Calculix) => {
+            Ok(Box::new(GradedSolidIndentation::new(design, pressing::parameters(design))?))
+        }
+        (DeckKind::GradedSolidIndentation, _) => Err("in ABAQUS the whole flower is pressed, as shells"),
         (_, DeckSolver::Calculix) => Err("its shells diverge in large rotations"),
         (_, _) if design.input().is_strip() => Err("a rectangular strip is no flower"),
         (DeckKind::GradedShell, DeckSolver::Abaqus) => Ok(Box::new(graded_shell::GradedShell::new(design))),
+        (DeckKind::GradedShellIndentation, DeckSolver::Abaqus) => {
+            Ok(Box::new(graded_shell::GradedShell::pressed(design)?))
+        }
+        (DeckKind::VoxelShellIndentation, DeckSolver::Abaqus) => {
+            Ok(Box::new(voxel_shell::VoxelShell::pressed(design)?))
+        }
         (DeckKind::VoxelShell, DeckSolver::Abaqus) => Ok(Box::new(voxel_shell::VoxelShell::new(design))),
     }
 }

@@ -13,7 +13,9 @@ use super::keywords::{
 };
 use super::layout::Layout;
 use super::number::{Coordinates, real};
-use super::schedule::Schedule;
+use super::pressing::Pressing;
+use super::schedule::{Pace, Schedule};
+use super::shell_press::{Procedure, ShellPress};
 use super::sink::Sink;
 use crate::design::Design;
 use crate::input::model::DeckSolver;
@@ -34,6 +36,7 @@ pub(super) struct ShellModel<'a> {
     moduli: Vec<f64>,
     schedule: Schedule,
     coordinates: Coordinates,
+    press: Option<ShellPress>,
 }
 
 impl<'a> ShellModel<'a> {
@@ -51,7 +54,17 @@ impl<'a> ShellModel<'a> {
             sheet,
             flower,
             moduli,
+            press: None,
         }
+    }
+
+    /// The same flower, to be pressed after the morph.
+    pub(super) fn pressed(mut self, procedure: Procedure, pressing: Pressing) -> Self {
+        if procedure.is_explicit() {
+            self.schedule = Schedule::paced(self.design, Pace::Smooth(pressing.morph_time_s()));
+        }
+        self.press = Some(ShellPress::new(self.flower, procedure, pressing));
+        self
     }
 
     /// Nodes, reference nodes included.
@@ -61,10 +74,23 @@ impl<'a> ShellModel<'a> {
 
     /// Elements.
     pub(super) fn elements(&self) -> u64 {
+        let plate = self.plate().map_or(0, |plate| plate.elements());
+        self.flower_elements() + plate
+    }
+
+    fn flower_elements(&self) -> u64 {
         self.count() as u64 * self.sheet.elements() + self.hub.map_or(0, |hub| hub.elements())
     }
 
+    fn plate(&self) -> Option<&HubPlate> {
+        self.press.as_ref()?.plate.as_ref()
+    }
+
     fn mesh_nodes(&self) -> u64 {
+        self.flower_nodes() + self.plate().map_or(0, |plate| plate.nodes())
+    }
+
+    fn flower_nodes(&self) -> u64 {
         self.spoke_nodes() + self.hub.map_or(0, |hub| hub.nodes())
     }
 
@@ -78,7 +104,16 @@ impl<'a> ShellModel<'a> {
 
     /// The element type.
     pub(super) fn element(&self) -> &str {
-        &self.design.input().decks.shell_element
+        match &self.press {
+            // The only one of the two that explicit dynamics is made for.
+            Some(press) if press.procedure.is_explicit() => "S4R",
+            _ => &self.design.input().decks.shell_element,
+        }
+    }
+
+    /// What the deck models, for its title.
+    pub(super) fn title(&self, what: &str) -> String {
+        if self.press.is_some() { format!("{what} under load") } else { what.to_owned() }
     }
 
     /// Paragraphs of the heading that both decks have.
@@ -88,7 +123,7 @@ impl<'a> ShellModel<'a> {
             Some(_) => (", HUB (elements of the hub)", "the rigid hub"),
             None => ("", "the hub, not modelled otherwise"),
         };
-        vec![
+        let mut paragraphs = vec![
             format!(
                 "Frame: hub at the origin, z up, spoke 1 along +x with its rim at x = {}, the others counter-clockwise.",
                 real(rim)
@@ -107,7 +142,9 @@ impl<'a> ShellModel<'a> {
             "Stresses and strains are in the spoke's axes too: 1 along, 2 across."
                 .to_owned(),
             "PHASE-<NAME>: elements whose mixture contains the phase.".to_owned(),
-        ]
+        ];
+        paragraphs.extend(self.press.iter().flat_map(ShellPress::paragraphs));
+        paragraphs
     }
 
     /// Everything after the heading. `sets` adds element sets after the spokes' elements.
@@ -125,6 +162,9 @@ impl<'a> ShellModel<'a> {
             }
             if self.hub.is_some() {
                 systems::instance(sink, "HUB-PLATE-1", "HUB-PLATE", 0.0)?;
+            }
+            if self.plate().is_some() {
+                systems::instance(sink, "INDENTER-1", "INDENTER", 0.0)?;
             }
             self.assembly(sink)?;
             sink.line("*END ASSEMBLY")?;
@@ -194,6 +234,16 @@ impl<'a> ShellModel<'a> {
             self.section(sink, "HUB", "HUB", "")?;
             sink.line("*END PART")?;
         }
+        if let Some(press) = &self.press
+            && let Some(plate) = &press.plate
+        {
+            sink.line("*PART, NAME=INDENTER")?;
+            sink.line("*NODE")?;
+            shell_nodes::plate(sink, plate, 0, press.height_mm(), self.coordinates)?;
+            sink.line("*ELEMENT, TYPE=R3D4, ELSET=INDENTER")?;
+            shell_elements::hub(sink, plate, 0, 0)?;
+            sink.line("*END PART")?;
+        }
         Ok(())
     }
 
@@ -209,6 +259,11 @@ impl<'a> ShellModel<'a> {
         if let Some(hub) = &self.hub {
             shell_nodes::hub(sink, hub, self.spoke_nodes(), self.coordinates)?;
         }
+        if let Some(press) = &self.press
+            && let Some(plate) = &press.plate
+        {
+            shell_nodes::plate(sink, plate, self.flower_nodes(), press.height_mm(), self.coordinates)?;
+        }
         for (name, node, position) in self.references() {
             nodes::more_nodes(sink, &[(&name, node, position)])?;
         }
@@ -217,6 +272,10 @@ impl<'a> ShellModel<'a> {
         if let Some(hub) = &self.hub {
             sink.line(&format!("*ELEMENT, TYPE={}, ELSET=HUB", self.element()))?;
             shell_elements::hub(sink, hub, self.spoke_nodes(), elements)?;
+        }
+        if let Some(plate) = self.plate() {
+            sink.line("*ELEMENT, TYPE=R3D4, ELSET=INDENTER")?;
+            shell_elements::hub(sink, plate, self.flower_nodes(), self.flower_elements())?;
         }
         sets(sink)?;
         // One section a spoke, for its axes.
@@ -282,11 +341,19 @@ impl<'a> ShellModel<'a> {
             ties::rigid_edge(sink, &format!("RIM-{i}"), &format!("RP-RIM-{i}"))?;
             ties::rigid_edge(sink, &format!("HUB-{i}"), &format!("RP-HUB-{i}"))?;
         }
-        if self.hub.is_some() {
-            ties::rigid_edge(sink, "HUB-PLATE", "RP-HUB")?;
+        match (&self.press, self.hub.is_some()) {
+            (Some(press), hub) => press.hub(sink, hub.then_some("HUB-PLATE"), self.stiffest())?,
+            (None, true) => ties::rigid_edge(sink, "HUB-PLATE", "RP-HUB")?,
+            (None, false) => {}
         }
         // The followers come first: RP-HUB keeps its degree of freedom, to be free or prescribed.
-        (1..=count).try_for_each(|i| ties::follow(sink, &format!("RP-HUB-{i}"), "RP-HUB", 3))
+        (1..=count).try_for_each(|i| ties::follow(sink, &format!("RP-HUB-{i}"), "RP-HUB", 3))?;
+        self.press.as_ref().map_or(Ok(()), |press| press.surfaces(sink, (0..self.count()).map(instance)))
+    }
+
+    fn stiffest(&self) -> &Material {
+        let phases = self.design.phases().phases();
+        &phases[phases.len() - 1]
     }
 
     /// Sets of the whole model; the element sets of a flat one come with its sections, which need them.
@@ -313,6 +380,9 @@ impl<'a> ShellModel<'a> {
                 sets::element_range(sink, "HUB", &of, 1, hub.elements())?;
             }
         }
+        if let Some(plate) = self.plate().filter(|_| parts) {
+            sets::element_range(sink, "INDENTER", &self.layout.instance("INDENTER-1"), 1, plate.elements())?;
+        }
         Ok(())
     }
 
@@ -323,25 +393,31 @@ impl<'a> ShellModel<'a> {
             sink.line("*SECTION CONTROLS, NAME=ENHANCED, HOURGLASS=ENHANCED")?;
         }
         materials::graded(sink, "GRADED", phases, Law::Linear, self.layout)?;
-        let stiffest = &phases.phases()[phases.phases().len() - 1];
+        let stiffest = self.stiffest();
         if self.hub.is_some() {
             let densities = phases.phases().iter().all(|p| p.density_kg_m3.is_some());
             let hub = Material { name: "HUB".to_owned(), ..stiffest.clone() };
             materials::plain(sink, &hub, Law::Linear, densities)?;
         }
         amplitudes::amplitudes(sink, self.schedule.motions())?;
+        if let Some(press) = &self.press {
+            amplitudes::amplitudes(sink, press.motion().iter())?;
+        }
         let instances: Vec<String> = (0..self.count()).map(|spoke| self.layout.prefix(&instance(spoke))).collect();
         shell_field::modulus(sink, &self.sheet, &instances, &self.moduli)?;
         if self.hub.is_some() {
             // Its material does not depend on the field; a value makes a plot of the field complete.
             sink.line(&format!("HUB-PLATE,{}", real(stiffest.modulus_mpa)))?;
         }
-        Ok(())
+        self.press.as_ref().map_or(Ok(()), |press| press.contact(sink))
     }
 
     /// The step from the flat flower to the dome.
     fn step(&self, sink: &mut Sink<'_>) -> Result<(), DeckError> {
-        step::open(sink, self.layout, "MORPH", Increments::MORPH)?;
+        match &self.press {
+            Some(press) => press.open_morph(sink, self.layout)?,
+            None => step::open(sink, self.layout, "MORPH", Increments::MORPH)?,
+        }
         boundary::drive(sink, "RP-RIMS", 1, &self.schedule.rim_travel)?;
         boundary::hold(sink, "RP-RIMS", 2, 3)?;
         boundary::hold(sink, "RP-HUBS", 1, 2)?;
@@ -360,7 +436,19 @@ impl<'a> ShellModel<'a> {
             ends("RP-RIM").chain(ends("RP-HUB")).chain(std::iter::once("RP-HUB".to_owned())).collect();
         let references: Vec<&str> = references.iter().map(String::as_str).collect();
         // Spokes are alike: the history of one mid-line is enough, the field output has them all.
-        output::abaqus_requests(sink, self.nodes(), "S,LE,FV", &["MIDLINE-1"], &references)?;
+        let requests = |sink: &mut Sink<'_>, often: &[String; 2]| {
+            output::abaqus_requests_at(sink, often, "S,LE,FV", &["MIDLINE-1"], &references)
+        };
+        let Some(press) = &self.press else {
+            requests(sink, &output::every_increment(self.nodes()))?;
+            return step::close(sink);
+        };
+        requests(sink, &press.often(self.nodes(), press.pressing.morph_time_s()))?;
+        press.energies(sink)?;
+        step::close(sink)?;
+        press.open_press(sink, self.layout)?;
+        requests(sink, &press.often(self.nodes(), press.pressing.press_time_s()))?;
+        press.energies(sink)?;
         step::close(sink)
     }
 }

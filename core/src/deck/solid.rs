@@ -30,10 +30,10 @@ pub(super) struct SolidModel<'a> {
     pub block: Block,
     pub element: String,
     pub law: Law,
-    schedule: Schedule,
+    pub schedule: Schedule,
     coordinates: Coordinates,
-    rim: Reference,
-    hub: Reference,
+    pub rim: Reference,
+    pub hub: Reference,
 }
 
 impl<'a> SolidModel<'a> {

@@ -1,7 +1,9 @@
 //! The whole flower as shells on the outline of its voxels, the modulus a nodal field.
 
 use super::keywords::heading::heading;
+use super::pressing::{Pressing, parameters};
 use super::shell::ShellModel;
+use super::shell_press::Procedure;
 use super::sink::Sink;
 use super::{Deck, DeckError};
 use crate::design::Design;
@@ -22,6 +24,19 @@ impl<'a> VoxelShell<'a> {
         let sheet = Sheet::new(stations, across, Spacing::Even(grid.size_mm()));
         Self { model: ShellModel::new(design, sheet, row_moduli(design), None) }
     }
+
+    /// The same, morphed and pressed in explicit dynamics.
+    pub(super) fn pressed(design: &'a Design) -> Result<Self, &'static str> {
+        let pressing = Pressing::new(design, parameters(design), 0.5 * contact_thickness(design))?;
+        let Self { model } = Self::new(design);
+        Ok(Self { model: model.pressed(Procedure::Explicit { thickness_mm: contact_thickness(design) }, pressing) })
+    }
+}
+
+/// Thickness of the spokes for contact, mm. ABAQUS makes facets thinner that are thicker than they are long, so what is
+/// wanted is said: half an edge, or the spokes' own where that is less.
+fn contact_thickness(design: &Design) -> f64 {
+    design.input().strips.thickness_mm.min(0.5 * design.grid().size_mm())
 }
 
 /// Modulus at every row of nodes, MPa: the mean of the slices beside it. A slice's is the designed one times the smooth
@@ -53,7 +68,7 @@ impl Deck for VoxelShell<'_> {
         )];
         paragraphs.extend(model.paragraphs());
         paragraphs.push("SLICE-<i>: elements of a slice, from 1 at the rim.".to_owned());
-        heading(sink, &model.design.input().name, "voxel shell", provenance, &paragraphs)?;
+        heading(sink, &model.design.input().name, &model.title("voxel shell"), provenance, &paragraphs)?;
         model.write(sink, |sink| {
             model.phase_sets(sink)?;
             (0..model.sheet.slices()).try_for_each(|slice| model.slice_set(sink, slice))

@@ -23,6 +23,8 @@ impl Design {
                     .to_owned(),
             );
         }
+        let refused = crate::deck::refused_indentations(self);
+        warnings.extend(refused.map(|(kind, reason)| format!("{} is not written: {reason}", kind.name())));
         warnings
     }
 

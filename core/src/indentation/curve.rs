@@ -36,6 +36,15 @@ pub fn secant(curve: &[LoadPoint], depth_mm: f64) -> Option<f64> {
     (depth_mm > 0.0).then(|| force_at(curve, depth_mm)).flatten().map(|force| force / depth_mm)
 }
 
+/// Slope at no depth, N/mm: that of the parabola through the first three points.
+#[must_use]
+pub fn tangent(curve: &[LoadPoint]) -> f64 {
+    let [a, b, c, ..] = curve else { return 0.0 };
+    let [near, far] = [b, c].map(|p| p.depth_mm - a.depth_mm);
+    let [first, second] = [(b.force_n - a.force_n) / near, (c.force_n - a.force_n) / far];
+    (first * far - second * near) / (far - near)
+}
+
 /// Work `int F dD` of the piecewise linear curve, N mm.
 #[must_use]
 pub fn work(curve: &[LoadPoint]) -> f64 {
@@ -106,6 +115,8 @@ mod tests {
         assert!((secant(&fine, 5.0).unwrap() - 2.5).abs() < 1e-9);
         assert_eq!(secant(&fine, 10.5), None);
         assert_eq!(secant(&fine, 0.0), None);
+        assert!((tangent(&fine) - 3.0).abs() < 1e-9);
+        assert!((tangent(&[fine[0], fine[3], fine[10]]) - 3.0).abs() < 1e-9);
         // A curve that ends before the thickness is taken as far as it goes.
         let short = &fine[..=400];
         assert!((rigidity(short, 2.0) - 2.925).abs() < 1e-5);

@@ -1,21 +1,24 @@
 //! Domes under load: the hub is pressed down and the rim held.
 //!
-//! Two models give one type of result, [`Indentation`]:
+//! Three models give one type of result, [`Indentation`]:
 //!
 //! - [`elastica`]: the graded strip as a chain of bending links, with a flat indenter as an inequality; milliseconds;
 //! - [`solid`]: the finite elements of [`crate::fem`], graded or with every voxel resolved, with the indenter and the
-//!   neighbouring spokes as rigid planes.
+//!   neighbouring spokes as rigid planes;
+//! - [`crate::results::pressed`]: CalculiX on the deck of one spoke under load.
 //!
 //! All figures are those of **one spoke**, above the state at which pressing starts (a held hub carries a force already).
 //! `docs/indentation.md` derives both and holds them against CalculiX.
 
+mod band;
 mod curve;
 pub mod elastica;
 mod error;
 pub mod output;
 pub mod solid;
 
-pub use curve::{LoadPoint, rigidity, secant, work};
+pub use band::{BandSource, ModulusBand};
+pub use curve::{LoadPoint, rigidity, secant, tangent, work};
 pub use error::IndentationError;
 use serde::Serialize;
 
@@ -23,6 +26,7 @@ use crate::design::Design;
 use crate::elastica::morph::Guide;
 use crate::input::indentation::{DEPTH_SHARE, INDENTER_SHARE};
 use crate::input::{Bending, IndentationInput, Indenter};
+use crate::materials::StrainLimits;
 
 /// What a curve was computed with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -34,7 +38,7 @@ pub enum IndentationModel {
     Graded,
     /// Every voxel in finite elements.
     Voxel,
-    /// CalculiX on the deck.
+    /// The graded strip in finite elements, by CalculiX.
     Calculix,
 }
 
@@ -60,19 +64,29 @@ pub struct PhaseStrain {
     pub strain: f64,
     /// What the material stands, where that is known.
     pub limit: Option<f64>,
+    /// Where it yields, where that is known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub yield_strain: Option<f64>,
 }
 
 impl PhaseStrain {
-    /// What the user should know, where the strain is more than the material stands.
-    fn warning(&self) -> Option<String> {
-        let limit = self.limit.filter(|limit| self.strain > *limit)?;
-        let (strain, limit) = (100.0 * self.strain, 100.0 * limit);
-        Some(format!("{} is strained by {strain:.2} % and stands {limit:.2} % (max_strain)", self.label))
+    pub(crate) fn new(label: String, strain: f64, limits: StrainLimits) -> Self {
+        Self { label, strain, limit: limits.max_strain, yield_strain: limits.yield_strain }
+    }
+
+    /// The strain of a mixture, held against the phase that stands least.
+    pub(crate) fn of_mixture(design: &Design, strain: f64) -> Self {
+        Self::new("GRADED".to_owned(), strain, StrainLimits::of_mixture(design.phases().phases()))
+    }
+
+    /// What the user should know, where the strain is more than the material stands or yields at.
+    pub(crate) fn warnings(&self) -> Vec<String> {
+        StrainLimits { yield_strain: self.yield_strain, max_strain: self.limit }.warnings(&self.label, self.strain)
     }
 }
 
 /// What the user should know about a curve; `lost` is the depth at which its equilibrium becomes unstable.
-fn curve_warnings(curve: &[LoadPoint], lost: Option<f64>) -> Vec<String> {
+pub(crate) fn curve_warnings(curve: &[LoadPoint], lost: Option<f64>) -> Vec<String> {
     let mut warnings = Vec::new();
     if let Some(depth) = lost {
         warnings
@@ -118,6 +132,8 @@ pub struct Indentation {
     pub largest_strain: Vec<PhaseStrain>,
     /// Share by which forces vary with all moduli, percent.
     pub modulus_band_percent: f64,
+    /// The key that it comes from.
+    pub modulus_band_from: BandSource,
     /// Deepest penetration of a rigid plane, mm.
     pub penetration_mm: f64,
     /// Points of the curve; the first has neither depth nor force.
@@ -154,6 +170,8 @@ pub struct Press {
     pub depth_mm: f64,
     /// Radius that the flat indenter covers, mm; absent where only the hub is pushed.
     pub radius_mm: Option<f64>,
+    /// Height of the dome, mm.
+    pub height_mm: f64,
 }
 
 impl Press {
@@ -171,7 +189,8 @@ impl Press {
         }
         let rim = profile.rho.first().copied().unwrap_or(0.0);
         let diameter = input.indenter_diameter_mm.unwrap_or(INDENTER_SHARE * 2.0 * rim);
-        Ok(Self { depth_mm, radius_mm: (input.indenter == Indenter::Flat).then_some(0.5 * diameter) })
+        let radius_mm = (input.indenter == Indenter::Flat).then_some(0.5 * diameter);
+        Ok(Self { depth_mm, radius_mm, height_mm })
     }
 }
 

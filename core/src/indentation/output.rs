@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::Serialize;
 use serde_json::Value;
 
-use super::Indentation;
+use super::{BandSource, Indentation};
 use crate::design::Design;
 use crate::error::Error;
 use crate::input::IndentationInput;
@@ -61,11 +61,15 @@ pub fn write(
     for curve in curves {
         let name = format!("{FOLDER}/{}", stem(curve));
         let press = super::Press::new(design, &IndentationInput { indenter: curve.indenter, ..input.clone() })?;
+        // A band that follows from the materials is no parameter.
+        let given = curve.modulus_band_from == BandSource::ModulusBandPercent;
+        let parameters =
+            IndentationInput { modulus_band_percent: given.then_some(curve.modulus_band_percent), ..input.clone() };
         let document = Document {
             schema: SCHEMA,
             provenance: provenance.clone(),
             name: &design.input().name,
-            parameters: input,
+            parameters: &parameters,
             indenter_diameter_mm: press.radius_mm.map(|r| 2.0 * r),
             secant_0_005_l_n_mm: curve.secant(0.005 * design.input().strips.length_mm),
             indentation: curve,
@@ -80,10 +84,18 @@ pub fn write(
     all.extend(earlier(&folder.join(FOLDER), &provenance, &written));
     let picture = IndentationPicture {
         title: format!("{}: one spoke under load", design.input().name),
-        caption: vec![format!(
-            "Force above that before pressing. Shaded: all moduli {} % lower and higher.",
-            rounded(input.modulus_band_percent, 3)
-        )],
+        caption: vec![match curves.first() {
+            Some(curve) => format!(
+                "Force above that before pressing. Shaded: all moduli {} % lower and higher{}.",
+                rounded(curve.modulus_band_percent, 3),
+                if curve.modulus_band_from == BandSource::ModulusScatterPercent {
+                    " (scatter of the phases)"
+                } else {
+                    ""
+                }
+            ),
+            None => "Force above that before pressing.".to_owned(),
+        }],
         curves: all,
     };
     let svg = indentation_svg(&picture).map_err(|e| Error::Internal(format!("the curves: {e}")))?;

@@ -10,8 +10,8 @@
 //!
 //! Contact is that of [`crate::fem::contact`]. The force is what the rim section carries more than before.
 
-use super::curve::{LoadPoint, rigidity, work};
-use super::{Indentation, IndentationError, IndentationModel, PhaseStrain, Press, smooth_volume};
+use super::curve::{LoadPoint, rigidity, tangent, work};
+use super::{Indentation, IndentationError, IndentationModel, ModulusBand, PhaseStrain, Press, smooth_volume};
 use crate::design::Design;
 use crate::elastica::tessellation;
 use crate::fem::assembly::State;
@@ -22,6 +22,7 @@ use crate::fem::newton::{Equilibrium, Solver, Stop};
 use crate::fem::recovery::{ElementResults, reactions};
 use crate::fem::{self, Model, MorphOptions, Resolution};
 use crate::input::IndentationInput;
+use crate::materials::StrainLimits;
 use crate::progress::Share;
 
 /// Penetration that contact leaves at most, as a share of the thickness.
@@ -129,8 +130,7 @@ impl Run<'_> {
             strains.iter_mut().zip(&now).for_each(|(all, now)| *all = all.max(*now));
             curve.push(self.point(&solver.contact, &state, &found, depth, [lift, energy], &now));
         }
-        // The slope at no depth of the parabola through the first three points.
-        let tangent = (4.0 * curve[1].force_n - curve[2].force_n) / (2.0 * curve[1].depth_mm);
+        let tangent = tangent(&curve);
         Ok(self.summed(input, curve, strains, [tangent, lift, penetration], unstable))
     }
 
@@ -325,17 +325,17 @@ impl Run<'_> {
             (IndentationModel::Voxel, self.design.grid().volume_mm3())
         };
         let of_phase = |(i, strain): (usize, f64)| {
-            let (label, limit) = if self.mixture() {
-                ("GRADED".to_owned(), phases.iter().filter_map(|m| m.max_strain).reduce(f64::min))
+            if self.mixture() {
+                PhaseStrain::of_mixture(self.design, strain)
             } else {
-                (phases[i].label(), phases[i].max_strain)
-            };
-            PhaseStrain { label, strain, limit }
+                PhaseStrain::new(phases[i].label(), strain, StrainLimits::of(&phases[i]))
+            }
         };
         let largest: Vec<PhaseStrain> = strains.into_iter().enumerate().map(of_phase).collect();
         let mut warnings = super::curve_warnings(&curve, unstable);
-        warnings.extend(largest.iter().filter_map(PhaseStrain::warning));
+        warnings.extend(largest.iter().flat_map(PhaseStrain::warnings));
         let work = work(&curve);
+        let band = ModulusBand::new(self.design, input);
         Indentation {
             model,
             indenter: input.indenter,
@@ -350,7 +350,8 @@ impl Run<'_> {
             volume_mm3: volume,
             mean_modulus_mpa: mean_modulus,
             largest_strain: largest,
-            modulus_band_percent: input.modulus_band_percent,
+            modulus_band_percent: band.percent,
+            modulus_band_from: band.source,
             penetration_mm: penetration,
             curve,
             warnings,

@@ -94,6 +94,10 @@ impl DesignInput {
             error.in_file(shown)
         };
         input.validate().map_err(located)?;
+        if input.indentation.is_some() {
+            let phases = input.phase_set().map_err(located)?;
+            input.indentation.iter_mut().for_each(|indentation| indentation.fill_band(phases.phases()));
+        }
         if let Some(thrust) = &mut input.thrust {
             thrust.choice = Some(thrust.resolved_choice());
         }

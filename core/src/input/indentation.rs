@@ -6,6 +6,7 @@ use serde_json::Value;
 use super::InputError;
 use super::check::check_value;
 use super::parameters::parameter;
+use crate::materials::Material;
 
 /// Pressing the hub of a dome down.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -23,8 +24,15 @@ pub struct IndentationInput {
     pub indenter_diameter_mm: Option<f64>,
     /// Whether strips bend as beams or as plates.
     pub bending: Bending,
-    /// Share by which all moduli may be off, percent.
-    pub modulus_band_percent: f64,
+    /// Share by which all moduli may be off, percent; absent where it is that of the materials' scatter.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub modulus_band_percent: Option<f64>,
+    /// Decks: pressure over penetration between indenter and spokes, N/mm^3.
+    pub contact_stiffness_n_mm3: f64,
+    /// Decks of explicit dynamics: nominal strain a second, 1/s.
+    pub loading_rate_per_s: f64,
+    /// Decks of explicit dynamics: factor on all masses.
+    pub mass_scaling: f64,
 }
 
 /// What presses a dome.
@@ -62,6 +70,8 @@ pub enum Bending {
 pub const INDENTER_SHARE: f64 = 0.339;
 /// Depth over the length of a spoke.
 pub const DEPTH_SHARE: f64 = 0.1;
+/// Share by which moduli may be off where materials do not say, percent.
+pub const BAND_PERCENT: f64 = 10.0;
 
 impl Default for IndentationInput {
     fn default() -> Self {
@@ -71,12 +81,23 @@ impl Default for IndentationInput {
             indenter: Indenter::Flat,
             indenter_diameter_mm: None,
             bending: Bending::Beam,
-            modulus_band_percent: 10.0,
+            modulus_band_percent: None,
+            contact_stiffness_n_mm3: 50.0,
+            loading_rate_per_s: 0.1,
+            mass_scaling: 1.0,
         }
     }
 }
 
 impl IndentationInput {
+    /// Fills in the band where the phases do not all have a scatter of their own; a band that is given stays. Designs without scatter
+    /// thus record the default and keep their hash.
+    pub(super) fn fill_band(&mut self, phases: &[Material]) {
+        if phases.iter().any(|m| m.modulus_scatter_percent.is_none()) {
+            self.modulus_band_percent.get_or_insert(BAND_PERCENT);
+        }
+    }
+
     /// Types and ranges of all keys (values may come from elsewhere than a design file).
     ///
     /// # Errors
@@ -118,7 +139,7 @@ mod tests {
             (IndentationInput { depth_mm: Some(-1.0), ..IndentationInput::default() }, "depth_mm"),
             (IndentationInput { steps: 0, ..IndentationInput::default() }, "steps"),
             (
-                IndentationInput { modulus_band_percent: f64::NAN, ..IndentationInput::default() },
+                IndentationInput { modulus_band_percent: Some(f64::NAN), ..IndentationInput::default() },
                 "modulus_band_percent",
             ),
         ] {

@@ -8,6 +8,7 @@
 
 pub mod check;
 pub mod conduction;
+mod custom_material;
 pub mod document;
 mod error;
 pub mod fabrication;

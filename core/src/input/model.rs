@@ -11,9 +11,6 @@ use crate::materials::{Material, library};
 use crate::micromechanics::PhaseSet;
 use crate::voxel::{Lattice, Match, Pattern, Rounding};
 
-/// Longest name of a material in element sets; solvers take labels of 80 characters.
-const LONGEST_LABEL: usize = 60;
-
 /// A complete design: the design file with defaults filled in and the contents of the files it names.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -267,6 +264,12 @@ pub enum DeckKind {
     VoxelCurrent,
     /// Current in one spoke, smooth width, one mixture a slice.
     GradedCurrent,
+    /// One spoke as a graded solid, morphed and then pressed.
+    GradedSolidIndentation,
+    /// All spokes as shells of smooth width, morphed and then pressed.
+    GradedShellIndentation,
+    /// All spokes as shells on the voxel outline, morphed and then pressed in explicit dynamics.
+    VoxelShellIndentation,
 }
 
 impl DeckKind {
@@ -282,7 +285,16 @@ impl DeckKind {
             Self::GradedHeat => "graded_heat",
             Self::VoxelCurrent => "voxel_current",
             Self::GradedCurrent => "graded_current",
+            Self::GradedSolidIndentation => "graded_solid_indentation",
+            Self::GradedShellIndentation => "graded_shell_indentation",
+            Self::VoxelShellIndentation => "voxel_shell_indentation",
         }
+    }
+
+    /// Whether the dome is pressed after the morph.
+    #[must_use]
+    pub fn is_indentation(self) -> bool {
+        matches!(self, Self::GradedSolidIndentation | Self::GradedShellIndentation | Self::VoxelShellIndentation)
     }
 
     /// The mechanical deck on whose mesh it is.
@@ -290,7 +302,9 @@ impl DeckKind {
     pub fn mesh(self) -> Self {
         match self {
             Self::VoxelHeat | Self::VoxelCurrent => Self::VoxelSolid,
-            Self::GradedHeat | Self::GradedCurrent => Self::GradedSolid,
+            Self::GradedHeat | Self::GradedCurrent | Self::GradedSolidIndentation => Self::GradedSolid,
+            Self::GradedShellIndentation => Self::GradedShell,
+            Self::VoxelShellIndentation => Self::VoxelShell,
             other => other,
         }
     }
@@ -303,6 +317,7 @@ impl DeckKind {
                 ("conductivity_w_mk", |m| m.conductivity_w_mk),
                 ("electrical_conductivity_s_m", |m| m.electrical_conductivity_s_m),
             ],
+            Self::VoxelShellIndentation => &[("density_kg_m3", |m| m.density_kg_m3)],
             _ => &[],
         }
     }
@@ -416,14 +431,7 @@ impl DesignInput {
             let Some(material) = known.iter().find(|m| m.name == *name) else {
                 return Err(unknown_material(&key, name, &known));
             };
-            if material.label().is_empty() {
-                let problem = "the name has no letter or digit of the English alphabet to name element sets by";
-                return Err(InputError::new(key, quoted(name), problem).help("rename the material"));
-            }
-            if material.label().len() > LONGEST_LABEL {
-                let problem = format!("names have at most {LONGEST_LABEL} letters and digits, for solvers' labels");
-                return Err(InputError::new(key, quoted(name), problem).help("shorten the material's name"));
-            }
+            material.check_label(&key)?;
             phases.push(material.clone());
         }
         let names: Vec<String> = self.materials.phases.iter().map(|p| quoted(p)).collect();

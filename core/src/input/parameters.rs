@@ -369,6 +369,27 @@ const DESIGN: &[Parameter] = &[
         ..BASE
     },
     Parameter {
+        key: "materials.custom.modulus_scatter_percent",
+        kind: between(0.0, 90.0),
+        unit: Some("%"),
+        description: "Standard deviation of the modulus over its mean: where every phase has one, the band of forces in \
+                      indentation is made of them.",
+        ..BASE
+    },
+    Parameter {
+        key: "materials.custom.yield_strength_mpa",
+        kind: length(1e6),
+        unit: Some("MPa"),
+        description: "Stress at which the material yields (0.2 % offset).",
+        ..BASE
+    },
+    Parameter {
+        key: "materials.custom.yield_strain",
+        kind: length(100.0),
+        description: "Strain at which the material yields.",
+        ..BASE
+    },
+    Parameter {
         key: "voxels.size_mm",
         kind: length(1e4),
         unit: Some("mm"),
@@ -437,11 +458,14 @@ const DESIGN: &[Parameter] = &[
                 "graded_heat",
                 "voxel_current",
                 "graded_current",
+                "graded_solid_indentation",
+                "graded_shell_indentation",
+                "voxel_shell_indentation",
             ],
         },
         default: Some("[\"graded_shell\", \"graded_solid\", \"voxel_solid\", \"voxel_shell\"]"),
         description: "Which decks are written; an empty list writes none. Heat and current need phases that have the \
-                      conductivities.",
+                      conductivities, voxel_shell_indentation their densities.",
         ..BASE
     },
     Parameter {

@@ -1,8 +1,11 @@
-//! Materials: the built-in library and custom ones.
+//! Materials: the built-in library, custom ones, and what tensile tests say of them.
 
 mod assumptions;
+mod limits;
+pub mod tensile;
 
 pub use assumptions::{AssumedProperty, Assumption, assumptions};
+pub use limits::StrainLimits;
 use serde::{Deserialize, Serialize};
 
 /// An isotropic material. Only modulus and Poisson's ratio are needed for a design.
@@ -33,9 +36,37 @@ pub struct Material {
     /// Largest principal strain the material stands, dimensionless.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max_strain: Option<f64>,
+    /// Standard deviation of the modulus over it, percent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub modulus_scatter_percent: Option<f64>,
+    /// Stress at which it yields (0.2 % offset), MPa.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub yield_strength_mpa: Option<f64>,
+    /// Strain at which it yields, dimensionless.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub yield_strain: Option<f64>,
 }
 
 impl Material {
+    /// A material of which nothing but its elasticity is known.
+    #[must_use]
+    pub fn new(name: &str, modulus_mpa: f64, poisson: f64) -> Self {
+        Self {
+            name: name.to_owned(),
+            modulus_mpa,
+            poisson,
+            density_kg_m3: None,
+            conductivity_w_mk: None,
+            specific_heat_j_kgk: None,
+            electrical_conductivity_s_m: None,
+            relative_permittivity: None,
+            max_strain: None,
+            modulus_scatter_percent: None,
+            yield_strength_mpa: None,
+            yield_strain: None,
+        }
+    }
+
     /// Density in ABAQUS's consistent mm set, tonne/mm^3.
     #[must_use]
     pub fn density_tonne_mm3(&self) -> Option<f64> {
@@ -79,15 +110,8 @@ pub fn label(name: &str) -> String {
 #[must_use]
 pub fn library() -> Vec<Material> {
     let plain = |name: &str, modulus_mpa: f64, density: f64| Material {
-        name: name.to_owned(),
-        modulus_mpa,
-        poisson: 0.3,
         density_kg_m3: Some(density),
-        conductivity_w_mk: None,
-        specific_heat_j_kgk: None,
-        electrical_conductivity_s_m: None,
-        relative_permittivity: None,
-        max_strain: None,
+        ..Material::new(name, modulus_mpa, 0.3)
     };
     let conducting = |name: &str, modulus: f64, density: f64, heat: f64, current: f64| Material {
         conductivity_w_mk: Some(heat),

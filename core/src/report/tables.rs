@@ -80,7 +80,7 @@ pub fn modulus(field: Option<&ModulusField>) -> String {
 #[must_use]
 pub fn materials(design: &Design) -> String {
     type Pick = fn(&Material) -> Option<f64>;
-    let columns: [(&str, Pick); 8] = [
+    let columns: [(&str, Pick); 11] = [
         ("E, MPa", |m| Some(m.modulus_mpa)),
         ("ν", |m| Some(m.poisson)),
         ("density, kg/m³", |m| m.density_kg_m3),
@@ -89,6 +89,9 @@ pub fn materials(design: &Design) -> String {
         ("electrical conductivity, S/m", |m| m.electrical_conductivity_s_m),
         ("relative permittivity", |m| m.relative_permittivity),
         ("largest strain", |m| m.max_strain),
+        ("scatter of E, %", |m| m.modulus_scatter_percent),
+        ("yield strength, MPa", |m| m.yield_strength_mpa),
+        ("yield strain", |m| m.yield_strain),
     ];
     let phases = design.phases().phases();
     // Properties that no phase has are left out.

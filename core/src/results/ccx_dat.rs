@@ -17,6 +17,8 @@ pub enum Quantity {
     Force,
     /// Sum of the reaction forces of the set, N: one row without a node.
     TotalForce,
+    /// Sum of the strain energy of the elements of the set, N mm, as first component: one row without a node.
+    InternalEnergy,
     /// Temperatures, K, as first components.
     Temperature,
     /// Heat that enters at the nodes, mW, as first components.
@@ -27,10 +29,11 @@ pub enum Quantity {
 
 impl Quantity {
     /// Beginnings of the blocks' headers.
-    const HEADERS: [(&'static str, Self); 6] = [
+    const HEADERS: [(&'static str, Self); 7] = [
         ("displacements (", Self::Displacement),
         ("forces (", Self::Force),
         ("total force (", Self::TotalForce),
+        ("total internal energy ", Self::InternalEnergy),
         ("temperatures ", Self::Temperature),
         ("heat generation ", Self::Heat),
         ("total heat generation ", Self::TotalHeat),
@@ -42,7 +45,7 @@ impl Quantity {
             Self::Displacement | Self::Force => (3, true),
             Self::TotalForce => (3, false),
             Self::Temperature | Self::Heat => (1, true),
-            Self::TotalHeat => (1, false),
+            Self::TotalHeat | Self::InternalEnergy => (1, false),
         }
     }
 }
@@ -101,7 +104,7 @@ pub fn parse(text: &str) -> Result<Vec<NodePrint>, ResultError> {
 }
 
 /// Rows begin with a label, headers with a word.
-fn is_text(line: &str) -> bool {
+pub(super) fn is_text(line: &str) -> bool {
     line.trim_start().starts_with(|c: char| c.is_ascii_alphabetic()) && line.contains(" time ")
 }
 
@@ -125,7 +128,7 @@ fn row(line: &str, quantity: Quantity) -> Option<(u64, [f64; 3])> {
 }
 
 /// A finite number. Fortran drops the `E` before an exponent of three digits.
-fn number(word: &str) -> Option<f64> {
+pub(super) fn number(word: &str) -> Option<f64> {
     let parsed = word.parse().ok().or_else(|| {
         let sign = word.rfind(['+', '-']).filter(|i| *i > 0)?;
         let (mantissa, exponent) = (word.get(..sign)?, word.get(sign..)?);

@@ -16,6 +16,7 @@ use crate::fem::element::Law;
 use crate::fem::model::MIXTURE;
 use crate::fem::morph::{self, Lead};
 use crate::fem::{self, FemError, MorphOptions, MorphSolution, Resolution};
+use crate::materials::{Material, StrainLimits};
 use crate::output::Provenance;
 use crate::progress::Share;
 
@@ -120,14 +121,12 @@ fn record(design: &Design, model: &fem::Model, solution: &MorphSolution) -> Embe
     let (rim, hub) = (solution.reactions.rim, solution.reactions.hub);
     let phases = design.phases().phases();
     let mixture = model.phases.first() == Some(&MIXTURE);
-    let largest: Vec<(String, Option<f64>, f64)> = if mixture {
+    let largest: Vec<(String, Option<f64>, StrainLimits)> = if mixture {
         let strains = solution.elements.principal_strains.iter().copied().fold(f64::MIN, f64::max);
-        // A mixture stands what its weakest phase stands.
-        let limit = phases.iter().filter_map(|m| m.max_strain).fold(f64::INFINITY, f64::min);
-        vec![("GRADED".to_owned(), Some(strains), limit)]
+        vec![("GRADED".to_owned(), Some(strains), StrainLimits::of_mixture(phases))]
     } else {
         let strains = solution.elements.largest_by_phase(&model.phases, phases.len());
-        phases.iter().zip(strains).map(|(m, e)| (m.label(), e, m.max_strain.unwrap_or(f64::INFINITY))).collect()
+        phases.iter().zip(strains).map(|(m, e)| (m.label(), e, StrainLimits::of(m))).collect()
     };
     let mut warnings = Vec::new();
     if solution.is_unstable() {
@@ -138,14 +137,14 @@ fn record(design: &Design, model: &fem::Model, solution: &MorphSolution) -> Embe
             if solution.negative == 1 { "" } else { "s" }
         ));
     }
-    for (label, strain, limit) in &largest {
-        if let Some(strain) = strain.filter(|e| e > limit) {
-            warnings.push(format!(
-                "{label} is strained by {:.2} % and stands {:.2} % (max_strain)",
-                100.0 * strain,
-                100.0 * limit
-            ));
-        }
+    for (label, strain, limits) in &largest {
+        warnings.extend(strain.iter().flat_map(|strain| limits.warnings(label, *strain)));
+    }
+    // The stress of a mixture is that of no phase.
+    if !mixture {
+        let stresses = solution.elements.largest_von_mises_by_phase(&model.phases, phases.len());
+        let warning = |(m, stress): (&Material, Option<f64>)| m.stress_warning(stress?);
+        warnings.extend(phases.iter().zip(stresses).filter_map(warning));
     }
     EmbeddedRecord {
         elements: model.mesh.elements.len(),

@@ -1,10 +1,12 @@
 //! What solvers return, and how it compares with the target.
 
 pub mod ccx_dat;
+pub mod ccx_elements;
 pub mod comparison;
 pub mod embedded;
 mod error;
 pub mod measured;
+pub mod pressed;
 pub mod verification;
 pub mod vtu;
 

@@ -48,9 +48,11 @@ pub struct Run {
     pub iterations: usize,
 }
 
-/// State of a run: the share of the step that is done, and the increment.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// State of a run: the step, the share of it that is done, and the increment.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Status {
+    /// Number of the step, from one; zero before the first increment.
+    pub step: usize,
     /// Share of the step, 0 to 1.
     pub share: f64,
     /// Number of the increment.
@@ -179,6 +181,7 @@ impl Drop for Running {
 
 /// One converged increment of the status file.
 struct StatusRow {
+    step: usize,
     increment: usize,
     iterations: usize,
     step_time: f64,
@@ -189,8 +192,9 @@ fn status_rows(text: &str) -> Vec<StatusRow> {
     text.lines()
         .filter_map(|line| {
             let cells: Vec<&str> = line.split_whitespace().collect();
-            let [_, increment, _, iterations, _, step_time, _] = cells[..] else { return None };
+            let [step, increment, _, iterations, _, step_time, _] = cells[..] else { return None };
             Some(StatusRow {
+                step: step.parse().ok()?,
                 increment: increment.parse().ok()?,
                 iterations: iterations.parse().ok()?,
                 step_time: step_time.parse().ok()?,
@@ -201,7 +205,8 @@ fn status_rows(text: &str) -> Vec<StatusRow> {
 
 fn last_status(sta: &Path) -> Status {
     let rows = status_rows(&read_limited(sta));
-    rows.last().map_or(Status { share: 0.0, increment: 0 }, |r| Status {
+    rows.last().map_or(Status::default(), |r| Status {
+        step: r.step,
         share: r.step_time.clamp(0.0, 1.0),
         increment: r.increment,
     })

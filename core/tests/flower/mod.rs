@@ -135,6 +135,8 @@ impl Model {
                         }
                     }
                 }
+                // What comes after the morph is not what the flower is.
+                "END STEP" => break,
                 _ => {}
             }
         }

@@ -10,11 +10,12 @@ def database(world, path, data):
     """Makes what openOdb(path) gives.
 
     ``data``: ``sets`` {name: [[label, [x, y, z]], ...]}, ``displacements`` {label: [u1, u2, u3]}, ``history`` [{label,
-    coordinates, outputs {name: [[time, value], ...]}}], ``time``, ``frames`` (0 for none), ``double``.
+    coordinates, outputs {name: [[time, value], ...]}}], ``time``, ``frames`` (0 for none), ``double``, ``press``: the history
+    of a second step; a history without a label is the whole model's.
     """
 
-    def thing(name, where, **values):
-        return Thing(world, world.class_key(name), where, **values)
+    def thing(kind, where, **values):
+        return Thing(world, world.class_key(kind), where, **values)
 
     def node(label, at):
         return thing("OdbMeshNode", "node %d" % label, label=label, coordinates=tuple(at))
@@ -32,16 +33,23 @@ def database(world, path, data):
     field._values["_moved"] = moved
     frame = thing("OdbFrame", "odb.frame", frameValue=data["time"])
     frame.fieldOutputs._store("U", field)
-    step = thing("OdbStep", "odb.steps['MORPH']", frames=[frame] * data.get("frames", 1))
-    odb.steps._store("MORPH", step)
-    for i, of in enumerate(data["history"]):
-        point = thing("HistoryPoint", "point %d" % i, node=node(of["label"], of["coordinates"]))
+    for name, history in (("MORPH", data["history"]), ("PRESS", data.get("press"))):
+        if history is not None:
+            step = thing("OdbStep", "odb.steps['%s']" % name, frames=[frame] * data.get("frames", 1))
+            odb.steps._store(name, step)
+            _store_history(thing, node, step, history)
+    return odb
+
+
+def _store_history(thing, node, step, history):
+    for i, of in enumerate(history):
+        where = node(of["label"], of["coordinates"]) if "label" in of else None
+        point = thing("HistoryPoint", "point %d" % i, node=where)
         region = thing("HistoryRegion", "region %d" % i, point=point)
         for name, pairs in of["outputs"].items():
             pairs = tuple(tuple(pair) for pair in pairs)
             region.historyOutputs._store(str(name), thing("HistoryOutput", name, data=pairs))
         step.historyRegions._store("Node ASSEMBLY.%d" % (i + 1), region)
-    return odb
 
 
 def install(world):

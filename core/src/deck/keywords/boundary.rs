@@ -23,6 +23,45 @@ pub(crate) fn drive(sink: &mut Sink<'_>, set: &str, dof: u8, motion: &Motion) ->
     sink.line(&format!("{set},{dof},{dof},{}", real(motion.value)))
 }
 
+/// Keeps a degree of freedom where a motion has brought it. CalculiX would begin the motion's amplitude anew.
+pub(crate) fn keep(sink: &mut Sink<'_>, set: &str, dof: u8, motion: &Motion) -> Result<(), DeckError> {
+    if motion.moves() { place(sink, set, dof, motion.last()) } else { Ok(()) }
+}
+
+/// Brings a degree of freedom to a value, linearly in time.
+pub(crate) fn place(sink: &mut Sink<'_>, set: &str, dof: u8, value: f64) -> Result<(), DeckError> {
+    sink.line("*BOUNDARY")?;
+    sink.line(&format!("{set},{dof},{dof},{}", real(value)))
+}
+
+/// Gives a degree of freedom a velocity, constant or over an amplitude.
+pub(crate) fn velocity(
+    sink: &mut Sink<'_>,
+    set: &str,
+    dof: u8,
+    value: f64,
+    amplitude: Option<&str>,
+) -> Result<(), DeckError> {
+    let amplitude = amplitude.map_or_else(String::new, |name| format!(", AMPLITUDE={name}"));
+    sink.line(&format!("*BOUNDARY, TYPE=VELOCITY{amplitude}"))?;
+    sink.line(&format!("{set},{dof},{dof},{}", real(value)))
+}
+
+/// Keeps both ends of a single strip in CalculiX where the morph has brought them, except for the hub's height.
+pub(crate) fn keep_ends(
+    sink: &mut Sink<'_>,
+    layout: Layout,
+    schedule: &Schedule,
+    [rim, hub]: [&Reference; 2],
+) -> Result<(), DeckError> {
+    keep(sink, rim.name, 1, &schedule.rim_travel)?;
+    for (reference, rotation) in [(rim, &schedule.rim_rotation), (hub, &schedule.hub_rotation)] {
+        let (set, dof) = reference.rotation(layout, 2);
+        keep(sink, set, dof, rotation)?;
+    }
+    Ok(())
+}
+
 /// Moves the two ends of a single strip by their reference nodes: everything is constrained but a free hub's height.
 pub(crate) fn ends(
     sink: &mut Sink<'_>,

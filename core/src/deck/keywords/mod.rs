@@ -4,6 +4,7 @@ pub(super) mod amplitudes;
 pub(super) mod boundary;
 pub(super) mod conduction;
 pub(super) mod constraints;
+pub(super) mod contact;
 pub(super) mod elements;
 pub(super) mod heading;
 pub(super) mod initial;

@@ -21,7 +21,16 @@ pub(crate) fn requests(
         let references: Vec<&str> = references.iter().map(|r| r.name).collect();
         return abaqus_requests(sink, nodes, "S,LE", midlines, &references);
     }
-    let frequency = frequency(nodes);
+    calculix_requests(sink, frequency(nodes), midlines, references)
+}
+
+/// The same for CalculiX, with how often the whole model is kept.
+pub(crate) fn calculix_requests(
+    sink: &mut Sink<'_>,
+    frequency: u32,
+    midlines: &[&str],
+    references: &[&Reference],
+) -> Result<(), DeckError> {
     for set in midlines {
         sink.line(&format!("*NODE PRINT, NSET={set}"))?;
         sink.line("U")?;
@@ -44,12 +53,28 @@ pub(crate) fn abaqus_requests(
     midlines: &[&str],
     references: &[&str],
 ) -> Result<(), DeckError> {
-    sink.line(&format!("*OUTPUT, FIELD, FREQUENCY={}", frequency(nodes)))?;
+    abaqus_requests_at(sink, &every_increment(nodes), variables, midlines, references)
+}
+
+/// The whole model now and then, histories in every increment.
+pub(crate) fn every_increment(nodes: u64) -> [String; 2] {
+    [format!("FREQUENCY={}", frequency(nodes)), "FREQUENCY=1".to_owned()]
+}
+
+/// The same with how often fields and histories are kept.
+pub(crate) fn abaqus_requests_at(
+    sink: &mut Sink<'_>,
+    [field, history]: &[String; 2],
+    variables: &str,
+    midlines: &[&str],
+    references: &[&str],
+) -> Result<(), DeckError> {
+    sink.line(&format!("*OUTPUT, FIELD, {field}"))?;
     sink.line("*NODE OUTPUT")?;
     sink.line("U,COORD")?;
     sink.line("*ELEMENT OUTPUT")?;
     sink.line(variables)?;
-    sink.line("*OUTPUT, HISTORY, FREQUENCY=1")?;
+    sink.line(&format!("*OUTPUT, HISTORY, {history}"))?;
     for set in midlines {
         sink.line(&format!("*NODE OUTPUT, NSET={set}"))?;
         sink.line("U,COORD")?;
@@ -62,6 +87,6 @@ pub(crate) fn abaqus_requests(
 }
 
 /// Every so many increments the whole model is kept.
-fn frequency(nodes: u64) -> u32 {
+pub(crate) fn frequency(nodes: u64) -> u32 {
     if nodes > MANY_NODES { 2000 } else { 5 }
 }

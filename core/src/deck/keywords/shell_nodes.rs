@@ -20,8 +20,23 @@ pub(crate) fn spokes(
 
 /// Writes the nodes of the hub, numbered on from `offset`.
 pub(crate) fn hub(sink: &mut Sink<'_>, plate: &HubPlate, offset: u64, format: Coordinates) -> Result<(), DeckError> {
-    sink.line(&format!("{},0,0,0", offset + 1))?;
-    sink.rows(&HubRows { plate, offset, format })
+    self::plate(sink, plate, offset, 0.0, format)
+}
+
+/// Writes the nodes of a plate at a height, mm, numbered on from `offset`.
+pub(crate) fn plate(
+    sink: &mut Sink<'_>,
+    plate: &HubPlate,
+    offset: u64,
+    height: f64,
+    format: Coordinates,
+) -> Result<(), DeckError> {
+    let mut tail = vec![b','];
+    format.put(&mut tail, height);
+    tail.push(b'\n');
+    let rows = HubRows { plate, offset, format, tail };
+    sink.line(&format!("{},0,0{}", offset + 1, String::from_utf8_lossy(&rows.tail).trim_end()))?;
+    sink.rows(&rows)
 }
 
 /// One row is one row of one spoke's nodes.
@@ -51,7 +66,7 @@ impl Rows for SpokeRows<'_> {
             let s = self.sheet.s(row);
             let mut id = Counter::new(spoke as u64 * self.sheet.nodes() + self.sheet.first_node(row));
             for index in 0..=self.sheet.row_across(row) {
-                put(out, &mut id, self.flower.place(spoke, s, self.sheet.y(row, index)), self.format);
+                put(out, &mut id, self.flower.place(spoke, s, self.sheet.y(row, index)), self.format, b",0\n");
             }
         }
     }
@@ -62,6 +77,8 @@ struct HubRows<'a> {
     plate: &'a HubPlate,
     offset: u64,
     format: Coordinates,
+    /// `,z` and the end of the line.
+    tail: Vec<u8>,
 }
 
 impl Rows for HubRows<'_> {
@@ -82,20 +99,20 @@ impl Rows for HubRows<'_> {
             let (kite, a) = (row / self.plate.divisions(), row % self.plate.divisions() + 1);
             let mut id = Counter::new(self.offset + self.plate.node(kite, a, 0));
             for b in 0..=self.plate.divisions() {
-                put(out, &mut id, self.plate.position(kite, a, b), self.format);
+                put(out, &mut id, self.plate.position(kite, a, b), self.format, &self.tail);
             }
         }
     }
 }
 
-/// Appends a node of the plane `z = 0` and counts on.
+/// Appends a node, whose `,z` and end of line are given, and counts on.
 #[inline]
-fn put(out: &mut Vec<u8>, id: &mut Counter, [x, y]: [f64; 2], format: Coordinates) {
+fn put(out: &mut Vec<u8>, id: &mut Counter, [x, y]: [f64; 2], format: Coordinates, tail: &[u8]) {
     out.extend_from_slice(id.text());
     out.push(b',');
     format.put(out, x);
     out.push(b',');
     format.put(out, y);
-    out.extend_from_slice(b",0\n");
+    out.extend_from_slice(tail);
     id.increment();
 }

@@ -46,6 +46,13 @@ pub(crate) fn open(sink: &mut Sink<'_>, layout: Layout, name: &str, by: Incremen
     sink.line(&format!("{},1.,{},{}", real(by.first), real(by.least), real(by.most)))
 }
 
+/// Opens a step of explicit dynamics that takes `time_s`.
+pub(crate) fn open_explicit(sink: &mut Sink<'_>, name: &str, time_s: f64) -> Result<(), DeckError> {
+    sink.line(&format!("*STEP, NAME={name}, NLGEOM=YES"))?;
+    sink.line("*DYNAMIC, EXPLICIT")?;
+    sink.line(&format!(",{}", real(time_s)))
+}
+
 /// Closes the step.
 pub(crate) fn close(sink: &mut Sink<'_>) -> Result<(), DeckError> {
     sink.line("*END STEP")

@@ -15,7 +15,9 @@ mod tests;
 use chain::{Chain, Hub, Plate, Shape, Stop};
 
 use super::curve::{LoadPoint, rigidity, work};
-use super::{Indentation, IndentationError, IndentationModel, PhaseStrain, Press, curve_warnings, smooth_volume};
+use super::{
+    Indentation, IndentationError, IndentationModel, ModulusBand, PhaseStrain, Press, curve_warnings, smooth_volume,
+};
 use crate::design::{Design, STATIONS};
 use crate::input::{Bending, IndentationInput};
 use crate::progress::Share;
@@ -133,12 +135,12 @@ impl<'a> Run<'a> {
             curve.push(self.point(&shape, *depth, start_energy));
         }
         let [volume, mean_modulus] = smooth_volume(self.design);
-        let limit = self.design.phases().phases().iter().filter_map(|m| m.max_strain).reduce(f64::min);
         let strain = curve.iter().fold(0.0_f64, |m, p| m.max(p.largest_strain));
-        let largest = PhaseStrain { label: "GRADED".to_owned(), strain, limit };
+        let largest = PhaseStrain::of_mixture(self.design, strain);
         let mut warnings = curve_warnings(&curve, lost);
-        warnings.extend(largest.warning());
+        warnings.extend(largest.warnings());
         let work = work(&curve);
+        let band = ModulusBand::new(self.design, input);
         Ok(Indentation {
             model: IndentationModel::Elastica,
             indenter: input.indenter,
@@ -154,7 +156,8 @@ impl<'a> Run<'a> {
             mean_modulus_mpa: mean_modulus,
             largest_strain: vec![largest],
             warnings,
-            modulus_band_percent: input.modulus_band_percent,
+            modulus_band_percent: band.percent,
+            modulus_band_from: band.source,
             penetration_mm: penetration,
             curve,
         })

@@ -46,8 +46,31 @@ pub(super) const INDENTATION: &[Parameter] = &[
         key: "indentation.modulus_band_percent",
         kind: between(0.0, 90.0),
         unit: Some("%"),
-        default: Some("10.0"),
-        description: "Share by which all moduli may be off: the force's band.",
+        description: "Share by which all moduli may be off: the force's band; by default the scatter of the phases where every \
+                      one has modulus_scatter_percent, else 10.",
+        ..DOME
+    },
+    Parameter {
+        key: "indentation.contact_stiffness_n_mm3",
+        kind: between(1e-3, 1e9),
+        unit: Some("N/mm^3"),
+        default: Some("50.0"),
+        description: "Decks: pressure between indenter and spokes over their penetration (CalculiX, ABAQUS/Standard).",
+        ..DOME
+    },
+    Parameter {
+        key: "indentation.loading_rate_per_s",
+        kind: between(1e-6, 1e6),
+        unit: Some("1/s"),
+        default: Some("0.1"),
+        description: "Deck of ABAQUS/Explicit: travel over length or height a second; sets the time of its steps.",
+        ..DOME
+    },
+    Parameter {
+        key: "indentation.mass_scaling",
+        kind: between(1.0, 1e8),
+        default: Some("1.0"),
+        description: "Deck of ABAQUS/Explicit: factor on all masses; increments grow with its root. One is the real mass.",
         ..DOME
     },
 ];
