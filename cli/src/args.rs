@@ -43,6 +43,8 @@ pub enum Command {
     Conduct(Box<ConductOptions>),
     /// Press the hub of a closed dome down: force-displacement curve, rigidity, energy.
     Indent(IndentOptions),
+    /// Look for the design that has most rigidity, energy or printability and keeps all limits.
+    Optimise(OptimiseOptions),
     /// Compute many designs: a grid or a Latin hypercube over keys of a design file, in one table.
     Sweep(SweepOptions),
     /// Test every layout of a small cell of two phases: moduli along x, y and z against their bounds.
@@ -282,6 +284,19 @@ pub struct IndentOptions {
     pub output: Option<PathBuf>,
 }
 
+/// Options of `optimise`.
+#[derive(Debug, Args)]
+pub struct OptimiseOptions {
+    /// The file of the optimisation (TOML, or JSON with the same keys).
+    pub file: PathBuf,
+    /// Folder to write into [default: out/NAME].
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    /// Designs at once [default: all cores].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+}
+
 /// Options of `sweep`.
 #[derive(Debug, Args)]
 pub struct SweepOptions {
@@ -299,6 +314,9 @@ pub struct SweepOptions {
     /// Compute the I-th of N parts only and write no table.
     #[arg(long, value_name = "I/N", value_parser = batch, conflicts_with_all = ["gather", "record"])]
     pub batch: Option<Batch>,
+    /// Compute nothing: write the design of every point (of the batch) into designs/, for another solver.
+    #[arg(long, conflicts_with_all = ["plan", "gather", "record"])]
+    pub designs: bool,
     /// Compute nothing: gather what all parts have computed.
     #[arg(long, conflicts_with = "record")]
     pub gather: bool,

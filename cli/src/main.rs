@@ -21,6 +21,7 @@ fn main() -> ExitCode {
         Command::Fabricate(options) => commands::fabricate::run(&options, &console),
         Command::Conduct(options) => commands::conduct::run(&options, &console),
         Command::Indent(options) => commands::indent::run(&options, &console),
+        Command::Optimise(options) => commands::optimise::run(&options, &console),
         Command::Sweep(options) => commands::sweep::run(&options, &console),
         Command::Micromechanics(options) => commands::micromechanics::run(&options, &console),
         Command::Materials(options) => commands::materials::run(&options, &console),

@@ -64,6 +64,7 @@ pub mod mesh;
 pub mod micromechanics;
 pub mod modulus_field;
 mod numerics;
+pub mod optimise;
 pub mod output;
 pub mod profile;
 pub mod progress;

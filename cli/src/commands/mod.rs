@@ -8,10 +8,11 @@ pub mod indent;
 pub mod lists;
 pub mod materials;
 pub mod micromechanics;
+pub mod optimise;
 pub mod sweep;
 pub mod verify;
-
 mod work_folder;
+
 use std::path::Path;
 
 use voxelastica_core::output::Provenance;
@@ -21,6 +22,9 @@ use crate::console::Console;
 
 /// Exit code where `--target-error` is missed.
 const MISSED: u8 = 6;
+
+/// Exit code where no design is feasible.
+const INFEASIBLE: u8 = 3;
 
 /// The design that `voxelastica design` wrote into a folder, computed again.
 fn designed(folder: &Path, console: &Console) -> Result<Design, Error> {

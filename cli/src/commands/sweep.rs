@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use serde_json::json;
 use voxelastica_core::Error;
 use voxelastica_core::solver::ccx::Ccx;
-use voxelastica_core::sweep::run::{Batch, RunOptions, known, record, run as compute, seconds_per_point};
+use voxelastica_core::sweep::run::{
+    Batch, DESIGNS, RunOptions, known, record, run as compute, seconds_per_point, write_designs,
+};
 use voxelastica_core::sweep::table::Status;
 use voxelastica_core::sweep::{Sweep, gather};
 
@@ -29,6 +31,12 @@ pub fn run(options: &SweepOptions, console: &Console) -> Result<u8, Error> {
     };
     if options.plan {
         return plan(&sweep, &folder, &run_options, console);
+    }
+    if options.designs {
+        let cancelled = || console.is_cancelled();
+        let count = write_designs(&sweep, &folder, run_options.batch, &cancelled)?;
+        console.say(format!("written   {count} designs into {}", folder.join(DESIGNS).display()));
+        return Ok(0);
     }
     if let Some(results) = &options.record {
         let count = record(&sweep, &folder, results)?;

@@ -45,12 +45,12 @@ pub enum Spacing {
 }
 
 impl AxisInput {
-    /// Holds key and values against the table of parameters. `index` counts the axes, `target_kind` is the design's.
+    /// Holds key and values against the table of parameters. `shown` is where the axis stands, `target_kind` the design's.
     ///
     /// # Errors
     /// [`InputError`].
-    pub fn check(&self, index: usize, target_kind: &str) -> Result<(), InputError> {
-        let at = |name: &str| format!("axes.{index}.{name}");
+    pub fn check(&self, shown: &str, target_kind: &str) -> Result<(), InputError> {
+        let at = |name: &str| format!("{shown}.{name}");
         let key = format!("\"{}\"", self.key);
         let Some(parameter) = parameter(&self.key).filter(|p| p.kind != Kind::Recorded) else {
             let known: Vec<&str> = PARAMETERS.iter().filter(|p| p.kind != Kind::Recorded).map(|p| p.key).collect();
@@ -124,7 +124,8 @@ impl AxisInput {
     }
 
     /// A number as the key takes it: whole where it must be.
-    fn number(&self, value: f64) -> Value {
+    #[must_use]
+    pub fn number(&self, value: f64) -> Value {
         match parameter(&self.key).map(|p| p.kind) {
             Some(Kind::Integer { .. }) => Value::from(value.round() as i64),
             // Twelve digits, so that 0.1 + 0.2 is the 0.3 that people read.
@@ -134,7 +135,7 @@ impl AxisInput {
 }
 
 /// Sets a dotted key.
-pub(super) fn set(root: &mut Map<String, Value>, key: &str, value: Value) {
+pub(crate) fn set(root: &mut Map<String, Value>, key: &str, value: Value) {
     match key.split_once('.') {
         None => {
             root.insert(key.to_owned(), value);

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
-use serde_json::{Map, Value};
+use serde_json::Value;
 
 use super::axis::AxisInput;
 use super::outputs::{OUTPUTS, SweepModel};
@@ -143,7 +143,7 @@ impl SweepInput {
 }
 
 /// An unknown name, with the closest known one.
-pub(super) fn unknown(key: &str, name: &str, known: &[&str], problem: &str) -> InputError {
+pub(crate) fn unknown(key: &str, name: &str, known: &[&str], problem: &str) -> InputError {
     let closest = known
         .iter()
         .map(|k| (strsim::jaro_winkler(k, name), *k))
@@ -157,10 +157,10 @@ pub(super) fn unknown(key: &str, name: &str, known: &[&str], problem: &str) -> I
 }
 
 /// Lines of dotted keys.
-pub(super) type Lines = HashMap<String, usize>;
+pub(crate) type Lines = HashMap<String, usize>;
 
 /// Line of a key, or of the table it stands in.
-pub(super) fn line_of(lines: &Lines, key: &str) -> Option<usize> {
+pub(crate) fn line_of(lines: &Lines, key: &str) -> Option<usize> {
     let mut key = key;
     loop {
         if let Some(line) = lines.get(key) {
@@ -170,7 +170,7 @@ pub(super) fn line_of(lines: &Lines, key: &str) -> Option<usize> {
     }
 }
 
-fn read_document(path: &Path) -> Result<Document, Error> {
+pub(crate) fn read_document(path: &Path) -> Result<Document, Error> {
     let shown = path.display().to_string();
     let text = crate::input::files::read_text(path, crate::input::document::LARGEST_FILE)
         .map_err(|problem| InputError::new("", "", problem).in_file(&shown))?;
@@ -179,12 +179,4 @@ fn read_document(path: &Path) -> Result<Document, Error> {
         _ => Document::from_toml(&text),
     };
     parsed.map_err(|e| Error::Input(e.in_file(&shown)))
-}
-
-/// The design file that points start from: its values, name and folder. Whether they are right is checked point by point.
-pub(super) fn read_base(path: &Path) -> Result<(Map<String, Value>, String, PathBuf), Error> {
-    let document = read_document(path)?;
-    let stem = path.file_stem().map_or_else(|| "design".to_owned(), |s| s.to_string_lossy().into_owned());
-    let name = document.root.get("name").and_then(Value::as_str).map_or(stem, str::to_owned);
-    Ok((document.root, name, path.parent().unwrap_or_else(|| Path::new("")).to_owned()))
 }

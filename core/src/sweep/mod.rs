@@ -10,6 +10,7 @@
 //! were computed. It holds no times and no machine's name.
 
 pub mod axis;
+pub mod base;
 mod error;
 pub mod gather;
 pub mod input;
@@ -27,11 +28,12 @@ pub use outputs::SweepModel;
 
 use std::path::Path;
 
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 use crate::error::Error;
-use crate::input::files::{Format, hex_sha256};
+use crate::input::files::hex_sha256;
 use crate::input::{DesignInput, InputError};
+use base::Base;
 use sampling::Sampling;
 
 /// Points above which a sweep is refused unless it was asked for explicitly.
@@ -44,9 +46,7 @@ pub const MOST_POINTS: u64 = 100_000_000;
 pub struct Sweep {
     input: SweepInput,
     sampling: Sampling,
-    base: Map<String, Value>,
-    base_name: String,
-    folder: std::path::PathBuf,
+    base: Base,
     hash: String,
 }
 
@@ -58,14 +58,13 @@ impl Sweep {
     pub fn read(path: &Path) -> Result<Self, Error> {
         let (input, folder, lines) = SweepInput::read(path)?;
         let shown = path.display().to_string();
-        let base_path = folder.join(&input.base);
-        let (base, base_name, base_folder) = input::read_base(&base_path)?;
+        let base = Base::read(&folder.join(&input.base))?;
         let located = |mut error: InputError| {
             error.line = error.line.or_else(|| input::line_of(&lines, &error.key));
             Error::Input(error.in_file(&shown))
         };
         let sampling = Sampling::new(&input).map_err(&located)?;
-        let mut sweep = Self { input, sampling, base, base_name, folder: base_folder, hash: String::new() };
+        let mut sweep = Self { input, sampling, base, hash: String::new() };
         sweep.check_axes().map_err(&located)?;
         sweep.settle_target()?;
         sweep.hash = sweep.hashed();
@@ -101,40 +100,30 @@ impl Sweep {
     /// # Errors
     /// [`InputError`] where the point's values do not go together.
     pub fn design_input(&self, point: u64) -> Result<DesignInput, InputError> {
-        let mut root = self.base.clone();
-        for (axis, value) in self.input.axes.iter().zip(self.values(point)) {
-            axis::set(&mut root, &axis.key, value);
-        }
-        root.insert("name".to_owned(), format!("{}_{point}", self.base_name).into());
-        let text = Value::Object(root).to_string();
-        let shown = format!("point {point}");
-        DesignInput::from_text(&text, Format::Json, &shown, &self.base_name, &self.folder)
+        let name = format!("{}_{point}", self.base.name());
+        let keys = self.input.axes.iter().map(|axis| axis.key.as_str());
+        self.base.design(keys.zip(self.values(point)), name, &format!("point {point}"))
     }
 
     fn check_axes(&self) -> Result<(), InputError> {
-        let kind = self.base.get("target").and_then(|t| t["kind"].as_str()).unwrap_or_default();
-        self.input.axes.iter().enumerate().try_for_each(|(i, axis)| axis.check(i, kind))
+        let kind = self.base.target_kind();
+        self.input.axes.iter().enumerate().try_for_each(|(i, axis)| axis.check(&format!("axes.{i}"), kind))
     }
 
     /// A target from a file is read once where no axis changes what it becomes.
     fn settle_target(&mut self) -> Result<(), Error> {
-        let changes = |key: &str| {
-            key.starts_with("target.") || matches!(key, "strips.length_mm" | "strips.hub_radius_mm" | "strips.count")
-        };
-        let from_file = self.base.get("target").is_some_and(|t| t.get("file").is_some());
-        if !from_file || self.input.axes.iter().any(|axis| changes(&axis.key)) || self.points() == 0 {
+        if self.points() == 0 {
             return Ok(());
         }
-        let input = self.design_input(0)?;
-        if let Ok(target) = serde_json::to_value(&input.target) {
-            self.base.insert("target".to_owned(), target);
-        }
+        let mut base = self.base.clone();
+        base.settle_target(self.input.axes.iter().map(|axis| axis.key.as_str()), |_| self.design_input(0))?;
+        self.base = base;
         Ok(())
     }
 
     fn hashed(&self) -> String {
         let content = self.design_input(0).ok().and_then(|input| serde_json::to_value(&input.target).ok());
-        let mut base = self.base.clone();
+        let mut base = self.base.root().clone();
         if let (Some(target), Some(content)) = (base.get_mut("target").and_then(Value::as_object_mut), content) {
             target.remove("file");
             target.insert("content".to_owned(), content["content_sha256"].clone());

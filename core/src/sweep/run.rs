@@ -13,6 +13,8 @@ use super::outputs::SweepModel;
 use super::point::{Outcome, compute};
 use super::{MANY_POINTS, Sweep, SweepError};
 use crate::error::Error;
+use crate::output::folder::Staging;
+use crate::output::json;
 use crate::progress::Cancelled;
 use crate::solver::ccx::Ccx;
 
@@ -190,6 +192,31 @@ pub fn run(
     });
     journal.sync()?;
     first_error.map_or(Ok(tally), Err)
+}
+
+/// Folder of the design files that [`write_designs`] writes.
+pub const DESIGNS: &str = "designs";
+
+/// Writes the design of every point of a batch, for solvers elsewhere: `designs/point_3.json`. Points whose values do not go
+/// together have none. Returns how many were written.
+///
+/// # Errors
+/// [`Error::Output`], [`Error::Cancelled`].
+pub fn write_designs(sweep: &Sweep, folder: &Path, batch: Batch, cancelled: Cancelled<'_>) -> Result<u64, Error> {
+    let mut staging = Staging::new(folder)?;
+    let mut count = 0;
+    for point in (0..sweep.points()).filter(|p| batch.holds(*p)) {
+        if cancelled() {
+            return Err(Error::Cancelled);
+        }
+        let Ok(input) = sweep.design_input(point) else { continue };
+        let name = format!("{DESIGNS}/point_{point}.json");
+        let text = json::to_text(&input).map_err(|e| Error::Internal(format!("{name}: {e}")))?;
+        staging.write_text(&name, &text)?;
+        count += 1;
+    }
+    staging.commit()?;
+    Ok(count)
 }
 
 /// Takes results of another solver into a journal: one JSON object a line, `{"point": 3, "outputs": {...}}` or

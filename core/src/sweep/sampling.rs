@@ -93,7 +93,7 @@ impl Sampling {
 }
 
 /// A Latin hypercube: on every axis each of `points` equal parts holds one point, at a random place within it.
-fn hypercube(axes: usize, points: u64, seed: u64) -> Vec<Vec<f64>> {
+pub(crate) fn hypercube(axes: usize, points: u64, seed: u64) -> Vec<Vec<f64>> {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
     let unit = |random: &mut Xoshiro256PlusPlus| (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
     (0..axes)
