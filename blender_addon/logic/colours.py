@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-#: Light to dark in luminance, told apart by the colour-blind: viridis at nine even places, sRGB.
-_SEQUENTIAL = ("440154", "472d7b", "3b528b", "2c728e", "21918c", "28ae80", "5ec962", "addc30", "fde725")
+#: From low or soft (light) to high or stiff (dark), told apart by the colour-blind, sRGB: the ramp of the reports and of FreeCAD.
+_SEQUENTIAL = ("f6e055", "b5d945", "5ec366", "28a880", "218f8c", "2c728e", "3b528b", "462f7c", "3d044e")
 #: Two directions from a light middle.
 _DIVERGING = ("2166ac", "67a9cf", "d1e5f0", "f7f7f7", "fddbc7", "ef8a62", "b2182b")
-#: Phases from softest to stiffest.
-_PHASES = ("f2c14e", "5fa8a0", "283d70")
+#: Phases from softest to stiffest, on the same ramp.
+_PHASES = (_SEQUENTIAL[0], _SEQUENTIAL[4], _SEQUENTIAL[8])
 _GREY = "8c8c8c"
 _STEPS = 256
 

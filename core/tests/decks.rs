@@ -8,8 +8,11 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use common::{FlatDeck, design, provenance, written};
 use proptest::prelude::*;
+use voxelastica_core::deck::unit_cell::UnitCellDeck;
 use voxelastica_core::deck::{self, DeckError, DeckPlan};
 use voxelastica_core::input::{DeckKind, DeckSolver};
+use voxelastica_core::materials::Material;
+use voxelastica_core::micromechanics::unit_cell::{BrickKind, CellMesh, CellSize, Layout, LoadedFaces};
 use voxelastica_core::{Design, progress};
 
 const HEMISPHERE: &str = r#"
@@ -42,6 +45,13 @@ const TWO: &str = "[materials]\nphases = [\"FLX9070\", \"FLX9095\"]";
 const THREE: &str = "[materials]\nphases = [\"soft\", \"FLX9070\", \"9 hard\"]\n\
                      [[materials.custom]]\nname = \"soft\"\nmodulus_mpa = 1.0\npoisson = 0.45\ndensity_kg_m3 = 1000\n\
                      [[materials.custom]]\nname = \"9 hard\"\nmodulus_mpa = 20.0\npoisson = 0.3\ndensity_kg_m3 = 1200";
+
+const CONDUCTION: &str = r#"["voxel_heat", "graded_heat", "voxel_current", "graded_current"]"#;
+const CONDUCTING: &str = "[materials]\nphases = [\"a\", \"b\"]\n\
+     [[materials.custom]]\nname = \"a\"\nmodulus_mpa = 3.0\npoisson = 0.3\ndensity_kg_m3 = 1410.0\n\
+     conductivity_w_mk = 0.3155\nspecific_heat_j_kgk = 1100.0\nelectrical_conductivity_s_m = 1e-7\nrelative_permittivity = 4.0\n\
+     [[materials.custom]]\nname = \"b\"\nmodulus_mpa = 10.0\npoisson = 0.3\ndensity_kg_m3 = 1270.0\n\
+     conductivity_w_mk = 2.01\nspecific_heat_j_kgk = 1200.0\nelectrical_conductivity_s_m = 3e-6\nrelative_permittivity = 5.0";
 
 /// Text equal up to the last digits of numbers, which may differ between mathematical libraries.
 fn same(found: &str, golden: &str) -> Result<(), String> {
@@ -79,23 +89,37 @@ fn decks_are_the_golden_ones() {
         ("pressed", tiny(DOME, TWO, "write = [\"graded_solid_indentation\"]")),
         ("held", tiny(DOME, &held, "solvers = [\"calculix\"]")),
         ("clamped", tiny(clamped, THREE, "solvers = [\"calculix\"]")),
-        ("coupon", tiny(coupon, TWO, "solvers = [\"calculix\"]")),
+        ("coupon", tiny(coupon, TWO, "solvers = [\"calculix\", \"nastran\"]")),
+        ("conducting", tiny(DOME, CONDUCTING, &format!("style = \"flat\"\nwrite = {CONDUCTION}"))),
     ];
     let mut wrong = Vec::new();
+    let mut check = |name: &str, relative: &str, text: &str| {
+        let path = folder.join(format!("{name}_{}", relative.replace('/', "_")));
+        if update {
+            std::fs::create_dir_all(&folder).unwrap();
+            std::fs::write(&path, text).unwrap();
+        }
+        let golden = std::fs::read_to_string(&path).unwrap_or_default();
+        if let Err(difference) = same(text, &golden) {
+            wrong.push(format!("{}: {difference}", path.display()));
+        }
+    };
     for (name, design) in &cases {
         for plan in deck::plan(design) {
             let text = written(design, &plan);
-            let path = folder.join(format!("{name}_{}", plan.relative_path().replace('/', "_")));
-            if update {
-                std::fs::create_dir_all(&folder).unwrap();
-                std::fs::write(&path, &text).unwrap();
-            }
-            let golden = std::fs::read_to_string(&path).unwrap_or_default();
-            if let Err(difference) = same(&text, &golden) {
-                wrong.push(format!("{}: {difference}", path.display()));
-            }
+            check(name, &plan.relative_path(), &text);
             assert_eq!(text, written(design, &plan), "the same design gives the same bytes");
         }
+    }
+    let [soft, rigid] = [Material::new("soft", 3.1, 0.3), Material::new("rigid", 12.6, 0.3)];
+    let size = CellSize::new(2).unwrap();
+    let mesh = CellMesh { elements_per_voxel: 1, element: BrickKind::Enhanced, faces: LoadedFaces::Sliding };
+    for solver in [DeckSolver::Abaqus, DeckSolver::Calculix] {
+        let layout = Layout::read("10/01", size).unwrap();
+        let deck = UnitCellDeck { size, layout, phases: [&soft, &rigid], mesh, axis: 0, solver };
+        let mut out = Vec::new();
+        deck.write(&provenance(), &mut out).unwrap();
+        check("stretch", &deck.relative_path(), &String::from_utf8(out).unwrap());
     }
     assert!(wrong.is_empty(), "{}\nVOXELASTICA_UPDATE_GOLDEN=1 rewrites them", wrong.join("\n"));
 }

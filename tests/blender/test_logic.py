@@ -108,10 +108,14 @@ def test_legends_say_what_colours_are() -> None:
     scale = colours.scale(0.0, 12.6, "modulus")
     assert scale.marks() == ["12.6", "9.4", "6.3", "3.2", "0.0"]
     rgba = scale.colours(np.array([0.0, 12.6, 99.0]))
-    assert np.array_equal(rgba[1], rgba[2]) and rgba[0, 2] > rgba[0, 1] and rgba[1, 0] > rgba[1, 2]
+    assert np.array_equal(rgba[1], rgba[2]) and rgba[0, 0] > rgba[0, 2] and rgba[1, 2] > rgba[1, 1]
     both = colours.scale(-0.01, 0.04, "curvature")
     assert both.low == -0.04 and both.colours(np.array([0.0]))[0, :3].min() > 0.85
     assert colours.scale(5.0, 5.0, "modulus").marks() == ["5.00"]
+    # Soft is light and stiff is dark, as in the reports: of moduli as of phases.
+    for shades in (scale.colours(np.array([0.0, 6.3, 12.6])), colours.phase_colours(3)):
+        light = shades[:, :3] @ [0.2126, 0.7152, 0.0722]
+        assert light[0] > light[1] > light[2]
     assert colours.Scale("phase", names=("soft", "stiff")).marks() == ["stiff", "soft"]
 
 

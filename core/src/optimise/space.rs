@@ -14,6 +14,8 @@ use crate::sweep::base::Base;
 const FEW_STEPS: usize = 8;
 /// Most steps of a variable.
 const MOST_STEPS: f64 = 1e6;
+/// How near to an end a place in a range is said to be at it, share of the range: a simplex stops a little short of it.
+const NEAR: f64 = 0.02;
 /// Lengths that whole voxels must divide.
 const ON_THE_LATTICE: [&str; 2] = ["strips.length_mm", "strips.thickness_mm"];
 
@@ -196,12 +198,12 @@ impl Variable {
     /// At which end of its values a place is.
     #[must_use]
     pub fn end(&self, place: f64) -> Option<&'static str> {
-        let last = match self.kind {
+        let (last, near) = match self.kind {
             VariableKind::Choice { .. } => return None,
-            VariableKind::Steps { count, .. } => (count - 1) as f64,
-            VariableKind::Range => 1.0,
+            // Of steps every one counts.
+            VariableKind::Steps { count, .. } => ((count - 1) as f64, 0.0),
+            VariableKind::Range => (1.0, NEAR),
         };
-        let near = 1e-3 * last.min(1.0);
         match place {
             p if p <= near => Some("lower"),
             p if p >= last - near => Some("upper"),

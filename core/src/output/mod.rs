@@ -8,6 +8,7 @@ pub mod provenance;
 pub mod summary;
 pub mod tables;
 pub mod unit_cells;
+pub mod vtu;
 pub mod write;
 
 pub use provenance::Provenance;

@@ -9,7 +9,6 @@ use super::comparison::compare;
 use super::verification::{
     EmbeddedRecord, Model, ReactionRecord, SolverRecord, Verification, predicted, require_shape,
 };
-use super::vtu::{self, Field, Hexahedra};
 use crate::design::Design;
 use crate::error::Error;
 use crate::fem::element::Law;
@@ -18,6 +17,7 @@ use crate::fem::morph::{self, Lead};
 use crate::fem::{self, FemError, MorphOptions, MorphSolution, Resolution};
 use crate::materials::{Material, StrainLimits};
 use crate::output::Provenance;
+use crate::output::vtu::{self, Field, Hexahedra};
 use crate::progress::Share;
 
 /// Name of the solver in `verification.json`.

@@ -8,7 +8,6 @@ mod error;
 pub mod measured;
 pub mod pressed;
 pub mod verification;
-pub mod vtu;
 
 pub use comparison::{Comparison, MidlinePoint, compare};
 pub use embedded::{EmbeddedOptions, EmbeddedVerification, verify_embedded};

@@ -187,7 +187,7 @@ fn write_vtu(
     }
     // Fraction of the stiffest phase: 0 or 1 in voxels.
     let rigid: Vec<f64> = strip.mixtures.iter().map(|mix| mix.last().copied().unwrap_or(0.0)).collect();
-    vtu::write(out, &strip.mesh, &comment, &fields, ("rigid_fraction", &rigid))
+    vtu::write(out, &strip.mesh, &format!("\n{}\n", comment.join("\n")), &fields, ("rigid_fraction", &rigid))
 }
 
 /// Refuses to fill the disk.

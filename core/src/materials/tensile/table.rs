@@ -1,7 +1,7 @@
 //! Tensile curves as tables.
 //!
-//! One row a reading, numbers separated by commas, semicolons or tabs. The first row names the columns with their units; others
-//! than those needed are passed over. Lines that start with `#` and blank lines are skipped. Where the separator is not the
+//! One row a reading, numbers separated by commas, semicolons or tabs. The first row names the columns with their units, or the
+//! second row has the units, as testing machines write them; columns other than those needed are passed over. Lines that start with `#` and blank lines are skipped. Where the separator is not the
 //! comma, a comma may be the decimal point.
 
 use std::path::Path;
@@ -15,6 +15,8 @@ use crate::progress::Cancelled;
 pub const MAX_BYTES: u64 = 64 << 20;
 /// Most rows of a table.
 pub const MAX_ROWS: usize = 1_000_000;
+/// Words before a column's name that say nothing here.
+const SHARED_WORDS: [&str; 4] = ["tensile", "engineering", "nominal", "standard"];
 /// Largest number that is read; far beyond any test in any of the units.
 const LARGEST: f64 = 1e12;
 /// Longest text that is echoed.
@@ -99,30 +101,59 @@ pub fn parse_curve(bytes: &[u8], shown: &str, specimen: &Specimen) -> Result<Ten
     let text = String::from_utf8_lossy(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes));
     // Files of old spreadsheets end lines with a bare carriage return.
     let ends: &[char] = if text.contains('\n') { &['\n'] } else { &['\r'] };
-    let mut layout: Option<Layout> = None;
+    // Not the ends of a line: a tab there may be an empty column.
+    let is_row = |line: &str| !line.trim().is_empty() && !line.trim_start().starts_with('#');
+    let mut rows =
+        text.split(ends).enumerate().map(|(i, line)| (i + 1, line)).filter(|(_, line)| is_row(line)).peekable();
+    let Some((first, line)) = rows.next() else {
+        return Err(InputError::new("", "", "this file is empty").help(HELP).in_file(shown));
+    };
+    let mut header = Header::of(line).map_err(|e| at(first, e))?;
+    if let Some(units) = rows.peek().and_then(|(_, line)| header.with_units(line)) {
+        header = units;
+        rows.next();
+    }
+    let layout = Layout::of(&header, specimen).map_err(|e| at(first, e))?;
     let (mut strains, mut stresses, mut lines) = (Vec::new(), Vec::new(), Vec::new());
-    for (i, line) in text.split(ends).enumerate() {
-        // Not the ends of the line: a tab there may be an empty column.
-        if line.trim().is_empty() || line.trim_start().starts_with('#') {
-            continue;
-        }
-        let Some(layout) = &layout else {
-            layout = Some(Layout::of(line, specimen).map_err(|e| at(i + 1, e))?);
-            continue;
-        };
+    for (i, line) in rows {
         if lines.len() == MAX_ROWS {
             let problem = format!("there are more than {MAX_ROWS} rows");
-            return Err(at(i + 1, InputError::new("", "", problem).help("thin the curve out")));
+            return Err(at(i, InputError::new("", "", problem).help("thin the curve out")));
         }
-        let [strain, stress] = layout.row(line).map_err(|e| at(i + 1, e))?;
+        let [strain, stress] = layout.row(line).map_err(|e| at(i, e))?;
         strains.push(strain);
         stresses.push(stress);
-        lines.push(i + 1);
-    }
-    if layout.is_none() {
-        return Err(InputError::new("", "", "this file is empty").help(HELP).in_file(shown));
+        lines.push(i);
     }
     TensileCurve::new(shown, strains, stresses, &lines)
+}
+
+/// Names of the columns, in the spelling of [`COLUMNS`].
+struct Header {
+    separator: char,
+    names: Vec<String>,
+}
+
+impl Header {
+    fn of(line: &str) -> Result<Self, InputError> {
+        let separator = ['\t', ';', ','].into_iter().find(|c| line.contains(*c)).unwrap_or(',');
+        if cells(line, separator).any(|cell| number_of(cell, separator).is_some()) {
+            return Err(InputError::new("", "", "the first row does not name the columns").help(HELP));
+        }
+        Ok(Self { separator, names: cells(line, separator).map(normal).collect() })
+    }
+
+    /// The names with the units of a second row; `None` where that row makes no known name of any, and is no row of units.
+    fn with_units(&self, line: &str) -> Option<Self> {
+        let units: Vec<&str> = cells(line, self.separator).collect();
+        if units.len() != self.names.len() || units.iter().any(|u| number_of(u, self.separator).is_some()) {
+            return None;
+        }
+        let known = |name: &String| COLUMNS.iter().any(|(known, ..)| known == name);
+        let joined: Vec<String> = self.names.iter().zip(units).map(|(n, u)| normal(&format!("{n} {u}"))).collect();
+        let told = joined.iter().zip(&self.names).any(|(joined, name)| joined != name && known(joined));
+        told.then_some(Self { separator: self.separator, names: joined })
+    }
 }
 
 /// One of the two columns that are read.
@@ -141,13 +172,8 @@ struct Layout {
 
 impl Layout {
     /// The layout that the header tells.
-    fn of(line: &str, specimen: &Specimen) -> Result<Self, InputError> {
-        let separator = ['\t', ';', ','].into_iter().find(|c| line.contains(*c)).unwrap_or(',');
-        let cells: Vec<&str> = cells(line, separator).collect();
-        if cells.iter().any(|cell| number_of(cell, separator).is_some()) {
-            return Err(InputError::new("", "", "the first row does not name the columns").help(HELP));
-        }
-        let names: Vec<String> = cells.iter().map(|cell| normal(cell)).collect();
+    fn of(header: &Header, specimen: &Specimen) -> Result<Self, InputError> {
+        let Header { separator, names } = header;
         let find = |quantity: Quantity| -> Result<Option<Column>, InputError> {
             let mut found: Option<Column> = None;
             for (place, name) in names.iter().enumerate() {
@@ -177,7 +203,7 @@ impl Layout {
         let strain =
             pick(Quantity::Strain, Quantity::Extension, "strain", specimen.gauge_length_mm, "gauge_length_mm")?;
         let stress = pick(Quantity::Stress, Quantity::Force, "stress", specimen.area_mm2, "area_mm2")?;
-        Ok(Self { separator, columns: [strain, stress], width: names.len() })
+        Ok(Self { separator: *separator, columns: [strain, stress], width: names.len() })
     }
 
     fn row(&self, line: &str) -> Result<[f64; 2], InputError> {
@@ -212,11 +238,12 @@ fn number_of(text: &str, separator: char) -> Option<f64> {
     if separator == ',' { text.parse().ok() } else { text.replace(',', ".").parse().ok() }
 }
 
-/// A column's name in lower case, with `_` for what is neither letter nor digit: `Stress (MPa)` is `stress_mpa`.
+/// A column's name in lower case, with `_` for what is neither letter nor digit and without words that all tensile tests share:
+/// `Tensile stress (MPa)` is `stress_mpa`.
 fn normal(name: &str) -> String {
     let spelled = name.to_lowercase().replace('%', " percent ").replace('²', "2");
     let words = spelled.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
-    words.collect::<Vec<_>>().join("_")
+    words.skip_while(|word| SHARED_WORDS.contains(word)).collect::<Vec<_>>().join("_")
 }
 
 #[cfg(test)]
@@ -243,6 +270,11 @@ mod tests {
             ("extension_mm;force_n", ";", [50.0, 40.0]),
             ("\"Extension (mm)\",\"Load (kN)\"", ",", [50.0, 0.04]),
             ("strain;stress (N/mm²)", ";", [1.0, 1.0]),
+            // Units in a second row.
+            ("Strain,Stress\n%,MPa", ",", [100.0, 1.0]),
+            ("\"Tensile strain\",\"Tensile stress\"\n\"(mm/mm)\",\"(MPa)\"", ",", [1.0, 1.0]),
+            ("Extension\tLoad\n\n(mm)\t(kN)", "\t", [50.0, 0.04]),
+            ("Strain;Standard force\n;N", ";", [1.0, 40.0]),
         ] {
             let curve = parsed(&text(header, separator, factors), &specimen).unwrap();
             for (i, [strain, stress]) in LINE.iter().enumerate() {
@@ -269,6 +301,12 @@ mod tests {
             ("strain,strain_percent,stress_mpa\n0,0,0\n", "columns strain and strain_percent are both there"),
             ("extension_mm,force_n\n0,0\n", "a.csv:1: gauge_length_mm: column extension_mm needs it"),
             ("strain,force_n\n0,0\n", "area_mm2: column force_n needs it to give the stress; give --area-mm2"),
+            ("strain,stress_mpa\nsoft,hard\n0,0\n", "a.csv:2: strain = soft: this is not a number"),
+            (
+                "strain,stress\n%,psi\n0,0\n",
+                "a.csv:1: no column gives the stress; they are named strain_percent,stress_psi",
+            ),
+            ("strain,stress\n", "a.csv:1: no column gives the stress"),
             ("strain,stress_mpa\n0,0\n\n0.1,soft\n", "a.csv:4: stress_mpa = soft: this is not a number"),
             ("strain,stress_mpa\n0,0\n0.1,inf\n", "a.csv:3: stress_mpa = inf: this is not a finite number"),
             ("strain,stress_mpa\n0,1e300\n", "this is too large"),

@@ -1,6 +1,6 @@
 //! VTU files (VTK's XML for unstructured grids) of hexahedra, as ParaView opens them.
 //!
-//! Arrays are inline, in base64, little-endian, each behind its length as a 32-bit number.
+//! Arrays are inline, in base64, little-endian, each behind its length as a 64-bit number.
 
 use std::io::{self, Write};
 
@@ -22,6 +22,8 @@ pub enum FieldValues {
         /// The numbers.
         values: Vec<f32>,
     },
+    /// Numbers, one a point or cell, of which every digit counts.
+    Precise(Vec<f64>),
     /// Small whole numbers.
     Labels(Vec<u8>),
 }
@@ -50,6 +52,12 @@ impl Field {
         Self { name: name.to_owned(), values: FieldValues::Numbers { components: N, values } }
     }
 
+    /// A field of one number a point or cell with all its digits: differences of it say something.
+    #[must_use]
+    pub fn precise(name: &str, values: impl IntoIterator<Item = f64>) -> Self {
+        Self { name: name.to_owned(), values: FieldValues::Precise(values.into_iter().collect()) }
+    }
+
     /// A field of whole numbers.
     #[must_use]
     pub fn labels(name: &str, values: &[u8]) -> Self {
@@ -73,13 +81,17 @@ pub struct Hexahedra<'a> {
 /// Writes a grid; `comment` stands in the file's head.
 ///
 /// # Errors
-/// What the writer returns, and [`io::ErrorKind::InvalidInput`] for arrays above 4 GB, which the format's 32-bit lengths
-/// cannot hold.
+/// What the writer returns, and [`io::ErrorKind::InvalidInput`] for more points than 32-bit numbers count.
 pub fn write(grid: &Hexahedra<'_>, comment: &str, out: &mut dyn Write) -> io::Result<()> {
+    if i32::try_from(grid.points.len()).is_err() {
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "too many points for a VTU file"));
+    }
     let mut xml = Writer::new_with_indent(out, b' ', 1);
     xml.write_event(Event::Decl(BytesDecl::new("1.0", None, None)))?;
-    xml.write_event(Event::Comment(BytesText::new(comment)))?;
-    let file = [("type", "UnstructuredGrid"), ("version", "0.1"), ("byte_order", "LittleEndian")];
+    // Two hyphens would end the comment.
+    xml.write_event(Event::Comment(BytesText::from_escaped(comment.replace("--", "- -"))))?;
+    let file =
+        [("type", "UnstructuredGrid"), ("version", "1.0"), ("byte_order", "LittleEndian"), ("header_type", "UInt64")];
     open(&mut xml, "VTKFile", &file)?;
     open(&mut xml, "UnstructuredGrid", &[])?;
     let [points, cells] = [grid.points.len().to_string(), grid.cells.len().to_string()];
@@ -92,8 +104,8 @@ pub fn write(grid: &Hexahedra<'_>, comment: &str, out: &mut dyn Write) -> io::Re
     open(&mut xml, "Cells", &[])?;
     let corners = grid.cells.iter().flatten().map(|n| (*n as i32).to_le_bytes());
     array(&mut xml, "connectivity", "Int32", 1, &bytes(corners))?;
-    let ends = (1..=grid.cells.len()).map(|i| (8 * i as i32).to_le_bytes());
-    array(&mut xml, "offsets", "Int32", 1, &bytes(ends))?;
+    let ends = (1..=grid.cells.len()).map(|i| (8 * i as i64).to_le_bytes());
+    array(&mut xml, "offsets", "Int64", 1, &bytes(ends))?;
     array(&mut xml, "types", "UInt8", 1, &vec![HEXAHEDRON; grid.cells.len()])?;
     for name in ["Cells", "Piece", "UnstructuredGrid", "VTKFile"] {
         close(&mut xml, name)?;
@@ -119,6 +131,10 @@ fn fields(xml: &mut Xml<'_, '_>, section: &str, fields: &[Field]) -> io::Result<
                 let bytes = bytes(values.iter().map(|v| v.to_le_bytes()));
                 array(xml, &field.name, "Float32", *components, &bytes)?;
             }
+            FieldValues::Precise(values) => {
+                let bytes = bytes(values.iter().map(|v| v.to_le_bytes()));
+                array(xml, &field.name, "Float64", 1, &bytes)?;
+            }
             FieldValues::Labels(values) => array(xml, &field.name, "UInt8", 1, values)?,
         }
     }
@@ -130,14 +146,15 @@ fn bytes<const N: usize>(values: impl Iterator<Item = [u8; N]>) -> Vec<u8> {
 }
 
 fn array(xml: &mut Xml<'_, '_>, name: &str, kind: &str, components: usize, values: &[u8]) -> io::Result<()> {
-    let length = u32::try_from(values.len())
-        .map_err(|_| io::Error::new(io::ErrorKind::InvalidInput, format!("the array {name} is larger than 4 GB")))?;
-    let components = components.to_string();
-    let attributes =
-        [("type", kind), ("Name", name), ("NumberOfComponents", components.as_str()), ("format", "binary")];
-    open(xml, "DataArray", &attributes)?;
-    let mut block = Vec::with_capacity(values.len() + 4);
-    block.extend_from_slice(&length.to_le_bytes());
+    let mut element = BytesStart::new("DataArray").with_attributes([("type", kind), ("Name", name)]);
+    // Readers make columns, not scalars, of arrays that say they have one component.
+    if components > 1 {
+        element.push_attribute(("NumberOfComponents", components.to_string().as_str()));
+    }
+    element.push_attribute(("format", "binary"));
+    xml.write_event(Event::Start(element))?;
+    let mut block = Vec::with_capacity(values.len() + 8);
+    block.extend_from_slice(&(values.len() as u64).to_le_bytes());
     block.extend_from_slice(values);
     xml.write_event(Event::Text(BytesText::from_escaped(STANDARD.encode(&block))))?;
     close(xml, "DataArray")
@@ -154,16 +171,18 @@ mod tests {
             points: &points,
             cells: &[[0, 1, 2, 3, 4, 5, 6, 7]],
             point_fields: vec![Field::vectors("displacement_mm", &points)],
-            cell_fields: vec![Field::labels("phase", &[2]), Field::scalars("a < b", [1.5])],
+            cell_fields: vec![Field::labels("phase", &[2]), Field::scalars("a < b", [1.5]), Field::precise("c", [0.1])],
         };
         let mut out = Vec::new();
-        write(&grid, "Voxelastica", &mut out).unwrap();
+        write(&grid, "Voxelastica --model", &mut out).unwrap();
         let text = String::from_utf8(out).unwrap();
-        assert!(text.contains("<!--Voxelastica-->") && text.contains("Name=\"a &lt; b\""), "{text}");
+        assert!(text.contains("<!--Voxelastica - -model-->") && text.contains("Name=\"a &lt; b\""), "{text}");
         let document: Vec<&str> = text.split("<DataArray").collect();
-        let encoded = document[2].split('>').nth(1).unwrap().split('<').next().unwrap().trim();
-        assert_eq!(STANDARD.decode(encoded).unwrap(), [1, 0, 0, 0, 2]);
-        let encoded = document[3].split('>').nth(1).unwrap().split('<').next().unwrap().trim();
-        assert_eq!(STANDARD.decode(encoded).unwrap()[4..], 1.5_f32.to_le_bytes());
+        let bytes = |i: usize| {
+            STANDARD.decode(document[i].split('>').nth(1).unwrap().split('<').next().unwrap().trim()).unwrap()
+        };
+        assert_eq!(bytes(2), [1, 0, 0, 0, 0, 0, 0, 0, 2]);
+        assert_eq!(bytes(3)[8..], 1.5_f32.to_le_bytes());
+        assert_eq!(bytes(4)[8..], 0.1_f64.to_le_bytes());
     }
 }
