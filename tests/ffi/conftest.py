@@ -40,7 +40,9 @@ def cmake_package(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The installed CMake package."""
     tool("c++")
     root = tmp_path_factory.mktemp("cmake")
-    cmake("-S", ROOT / "ffi" / "cmake", "-B", root / "build")
+    # As scripts/test builds it: nothing is compiled a second time.
+    packages = "-DVOXELASTICA_PACKAGES=--workspace;--lib;--bins;--tests"
+    cmake("-S", ROOT / "ffi" / "cmake", "-B", root / "build", packages)
     cmake("--build", root / "build")
     cmake("--install", root / "build", "--prefix", root / "package")
     return root / "package"
