@@ -10,7 +10,7 @@ use super::objective::Objective;
 use crate::error::Error;
 use crate::input::InputError;
 use crate::sweep::axis::Spacing;
-use crate::sweep::input::{Lines, line_of, read_document};
+use crate::sweep::input::{Lines, read_checked};
 
 /// Most variables.
 const MOST_VARIABLES: usize = 12;
@@ -78,25 +78,12 @@ impl OptimiseInput {
     /// # Errors
     /// [`Error::Input`] naming file, line, key and value.
     pub fn read(path: &Path) -> Result<(Self, PathBuf, Lines), Error> {
-        let shown = path.display().to_string();
-        let document = read_document(path)?;
-        let located = |mut error: InputError| {
-            error.line = error.line.or_else(|| line_of(&document.lines, &error.key));
-            Error::Input(error.in_file(&shown))
-        };
-        let mut input: Self = serde_json::from_value(Value::Object(document.root.clone())).map_err(|error| {
-            let text = error.to_string();
-            let key = text.split('`').nth(1).unwrap_or_default().to_owned();
-            let mut wrong = InputError::new("", "", format!("this is no optimisation: {text}"));
-            wrong.line =
-                document.lines.iter().filter(|(k, _)| k.rsplit('.').next() == Some(&key)).map(|(_, l)| *l).min();
-            located(wrong)
-        })?;
-        if input.name.is_empty() {
-            input.name = path.file_stem().map_or_else(|| "optimum".to_owned(), |s| s.to_string_lossy().into_owned());
-        }
-        input.check().map_err(&located)?;
-        Ok((input, path.parent().unwrap_or_else(|| Path::new("")).to_owned(), document.lines))
+        read_checked(path, "an optimisation", |input: &mut Self, stem| {
+            if input.name.is_empty() {
+                stem.clone_into(&mut input.name);
+            }
+            input.check()
+        })
     }
 
     fn check(&self) -> Result<(), InputError> {

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -83,26 +84,12 @@ impl SweepInput {
     /// # Errors
     /// [`Error::Input`] naming file, line, key and value.
     pub fn read(path: &Path) -> Result<(Self, PathBuf, Lines), Error> {
-        let shown = path.display().to_string();
-        let document = read_document(path)?;
-        let located = |mut error: InputError| {
-            error.line = error.line.or_else(|| line_of(&document.lines, &error.key));
-            Error::Input(error.in_file(&shown))
-        };
-        let mut input: Self = serde_json::from_value(Value::Object(document.root.clone())).map_err(|error| {
-            let text = error.to_string();
-            // What stands in backquotes first is the key that is unknown or missing.
-            let key = text.split('`').nth(1).unwrap_or_default().to_owned();
-            let mut wrong = InputError::new("", "", format!("this is not a sweep: {text}"));
-            wrong.line =
-                document.lines.iter().filter(|(k, _)| k.rsplit('.').next() == Some(&key)).map(|(_, l)| *l).min();
-            located(wrong)
-        })?;
-        if input.name.is_empty() {
-            input.name = path.file_stem().map_or_else(|| "sweep".to_owned(), |s| s.to_string_lossy().into_owned());
-        }
-        input.check().map_err(&located)?;
-        Ok((input, path.parent().unwrap_or_else(|| Path::new("")).to_owned(), document.lines))
+        read_checked(path, "a sweep", |input: &mut Self, stem| {
+            if input.name.is_empty() {
+                stem.clone_into(&mut input.name);
+            }
+            input.check()
+        })
     }
 
     fn check(&mut self) -> Result<(), InputError> {
@@ -170,7 +157,36 @@ pub(crate) fn line_of(lines: &Lines, key: &str) -> Option<usize> {
     }
 }
 
-pub(crate) fn read_document(path: &Path) -> Result<Document, Error> {
+/// Reads a file of a type and checks it with the file's stem, which may serve as a name; returns it with its folder and the lines of
+/// its keys. `what` says in errors what the file should be.
+///
+/// # Errors
+/// [`Error::Input`] naming file, line, key and value.
+pub(crate) fn read_checked<T: DeserializeOwned>(
+    path: &Path,
+    what: &str,
+    check: impl FnOnce(&mut T, &str) -> Result<(), InputError>,
+) -> Result<(T, PathBuf, Lines), Error> {
+    let shown = path.display().to_string();
+    let document = read_document(path)?;
+    let located = |mut error: InputError| {
+        error.line = error.line.or_else(|| line_of(&document.lines, &error.key));
+        Error::Input(error.in_file(&shown))
+    };
+    let mut input: T = serde_json::from_value(Value::Object(document.root.clone())).map_err(|error| {
+        let text = error.to_string();
+        // What stands in backquotes first is the key that is unknown or missing.
+        let key = text.split('`').nth(1).unwrap_or_default().to_owned();
+        let mut wrong = InputError::new("", "", format!("this is not {what}: {text}"));
+        wrong.line = document.lines.iter().filter(|(k, _)| k.rsplit('.').next() == Some(&key)).map(|(_, l)| *l).min();
+        located(wrong)
+    })?;
+    let stem = path.file_stem().map_or_else(|| what.to_owned(), |s| s.to_string_lossy().into_owned());
+    check(&mut input, &stem).map_err(&located)?;
+    Ok((input, path.parent().unwrap_or_else(|| Path::new("")).to_owned(), document.lines))
+}
+
+pub(super) fn read_document(path: &Path) -> Result<Document, Error> {
     let shown = path.display().to_string();
     let text = crate::input::files::read_text(path, crate::input::document::LARGEST_FILE)
         .map_err(|problem| InputError::new("", "", problem).in_file(&shown))?;
